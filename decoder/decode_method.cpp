@@ -21,6 +21,7 @@
 #include "decoder/fast/motion_tv.h"
 #include "decoder/frame_exposures.h"
 #include "decoder/hitomi2011/hitomi2011.h"
+#include "decoder/live/live_decoder.h"
 #include "decoder/measurements.h"
 #include "decoder/naive/nearest_samples.h"
 #include "decoder/pixel_response.h"
@@ -80,6 +81,10 @@ constexpr NamedDecodeMethod kMethods[] = {
      [](const BlockTask& block) -> std::optional<FluxVideo> {
          return nearest_samples(block.measurements);
      }},
+    {"live", DecodeMethod::kLive, false, false,
+     "means along time, and residuals blurred in space: for a picture while filming", kMaxCoreSites,
+     30, 0.12, [](Config&, DecodeOptions&) {},
+     [](const BlockTask& block) { return decode_live(block.measurements, block.progress); }},
     {"fast", DecodeMethod::kFast, true, false, "motion-compensated total variation", kMaxCoreSites,
      58, 2.1, [](Config& config, DecodeOptions& options) { read_options(config, options.fast); },
      [](const BlockTask& block) {

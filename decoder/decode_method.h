@@ -19,6 +19,7 @@ struct Measurements;
 
 enum class DecodeMethod {
     kNaive,      ///< each pixel holds its nearest samples; no model of the scene
+    kLive,       ///< residuals of samples blurred in space, for a picture while filming
     kFast,       ///< motion-compensated total variation
     kBest,       ///< collaborative filter of similar patches
     kPortz2013,  ///< the method of the paper, in two stages

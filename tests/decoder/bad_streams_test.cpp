@@ -72,6 +72,8 @@ class BadStreamsTest : public testing::TestWithParam<NamedDecodeMethod> {
                              float brightest = kBrightest) {
         // Sums of patterns overshoot; but no slot has more light than all of an exposure.
         if (brightest == kBrightest && of_other_cameras(GetParam().method)) brightest *= 8;
+        // To a bound of 2.0 come the residuals of the pixels around.
+        if (brightest == kBrightest && GetParam().method == DecodeMethod::kLive) brightest = 4;
         EXPECT_EQ(outcome.slots, static_cast<std::int64_t>(recorded.packets.size()));
         ASSERT_EQ(outcome.light.size(), recorded.packets.size() * recorded.header.shape.sites());
         for (const float light : outcome.light)

@@ -94,7 +94,8 @@ TEST(MosaicTest, ALastingColourComesBackInEveryPixelByEveryMethod) {
     const FluxVideo video = constant(45, shape, colour);
     const ExposureSchedule schedule = random_schedule(18, 21, kPaperExposureSlots, 1);
     for (const ColourFilter cfa : kFilters)
-        for (const DecodeMethod method : {DecodeMethod::kNaive, DecodeMethod::kFast}) {
+        for (const DecodeMethod method :
+             {DecodeMethod::kNaive, DecodeMethod::kLive, DecodeMethod::kFast}) {
             const FluxVideo x = decode_mosaic(
                 record_mosaic(video, cfa, schedule, {.read_noise_e = 0, .shot_noise = false}),
                 method);
@@ -107,7 +108,8 @@ TEST(MosaicTest, ColoursThatNoPixelSeesAreTakenToBeGrey) {
     // A row of rggb has no blue, a single pixel of bggr nothing else.
     for (const auto& [cfa, shape] : {std::pair{ColourFilter::kRggb, FrameShape{1, 9, 3}},
                                      std::pair{ColourFilter::kBggr, FrameShape{1, 1, 3}}})
-        for (const DecodeMethod method : {DecodeMethod::kNaive, DecodeMethod::kFast}) {
+        for (const DecodeMethod method :
+             {DecodeMethod::kNaive, DecodeMethod::kLive, DecodeMethod::kFast}) {
             const FluxVideo x =
                 decode_mosaic(record_mosaic(constant(40, shape, {0.3F, 0.3F, 0.3F}), cfa,
                                             random_schedule(1, 9, kPaperExposureSlots, 1),
@@ -126,7 +128,8 @@ TEST(MosaicTest, FramesOfAnySizeDecodeToLight) {
             const FluxVideo video = random_video(30, shape, 1);
             const Recorded recorded = record_mosaic(
                 video, cfa, random_schedule(shape.rows, shape.cols, kPaperExposureSlots, 1));
-            for (const DecodeMethod method : {DecodeMethod::kNaive, DecodeMethod::kFast}) {
+            for (const DecodeMethod method :
+                 {DecodeMethod::kNaive, DecodeMethod::kLive, DecodeMethod::kFast}) {
                 const FluxVideo x = decode_mosaic(recorded, method);
                 ASSERT_EQ(x.shape(), shape);
                 EXPECT_TRUE(std::ranges::all_of(x.data(), [](float v) { return v >= 0 && v < 3; }))

@@ -22,9 +22,10 @@
 namespace stipple {
 namespace {
 
-constexpr DecodeMethod kMethods[] = {DecodeMethod::kNaive,     DecodeMethod::kFast,
-                                     DecodeMethod::kBest,      DecodeMethod::kPortz2013,
-                                     DecodeMethod::kReddy2011, DecodeMethod::kHitomi2011};
+constexpr DecodeMethod kMethods[] = {DecodeMethod::kNaive,     DecodeMethod::kLive,
+                                     DecodeMethod::kFast,      DecodeMethod::kBest,
+                                     DecodeMethod::kPortz2013, DecodeMethod::kReddy2011,
+                                     DecodeMethod::kHitomi2011};
 constexpr FrameShape kShape{.rows = 16, .cols = 20, .planes = 1};
 
 /// The masks of 8 slots of a coded aperture: every pixel open in every slot, in some greys.

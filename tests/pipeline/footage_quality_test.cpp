@@ -42,6 +42,25 @@ TEST_P(BestOnFootageTest, BestIsAsGoodAsMeasuredAndBetterThanConventionalCameras
     expect_better_than_cameras(random, *video);
 }
 
+TEST(LiveOnFootageTest, LiveIsBetterThanNaiveOnEachClip) {
+    constexpr const char* kClips[] = {"mouse250_a", "mouse250_b",  "nat30_blocks", "nat30_coffee",
+                                      "hdr_desk",   "hdr_desk_fg", "hdr_stilllife"};
+    double linear_db = 0;
+    double gamma_db = 0;
+    for (const char* name : kClips) {
+        const auto video = luminance_clip(name);
+        if (!video) GTEST_SKIP() << "no footage " << name << " in " << footage_folder();
+        const VideoQuality naive = quality_of(*video, "random", DecodeMethod::kNaive);
+        const VideoQuality live = quality_of(*video, "random", DecodeMethod::kLive);
+        EXPECT_GT(live.psnr_db, naive.psnr_db + 1) << name;
+        EXPECT_GT(live.psnr_gamma_db, naive.psnr_gamma_db + 2) << name;
+        linear_db += (live.psnr_db - naive.psnr_db) / std::size(kClips);
+        gamma_db += (live.psnr_gamma_db - naive.psnr_gamma_db) / std::size(kClips);
+    }
+    expect_quality("linear", linear_db, 3.54);
+    expect_quality("gamma", gamma_db, 3.80);
+}
+
 /// By how much `best` is better than frames of four slots held, which is what the camera gives, dB:
 /// linear, and after 1/2.2, where dark light counts more and blur less.
 struct Gain {

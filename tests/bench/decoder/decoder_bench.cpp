@@ -8,6 +8,7 @@
 
 #include "core/parallel.h"
 #include "decoder/fast/motion_tv.h"
+#include "decoder/live/live_decoder.h"
 #include "decoder/measurements.h"
 #include "decoder/naive/nearest_samples.h"
 #include "decoder/pixel_response.h"
@@ -94,6 +95,13 @@ void naive(benchmark::State& state) {
     count_voxels(state, 1);
 }
 
+void live(benchmark::State& state) {
+    const ThreadLimit limit(static_cast<int>(state.range(0)));
+    const Measurements& m = measurements(1);
+    for (auto step : state) benchmark::DoNotOptimize(decode_live(m));
+    count_voxels(state, 1);
+}
+
 void copy(benchmark::State& state) {
     const FluxVideo x(kSlots, shape_of(1));
     FluxVideo y = x;
@@ -116,6 +124,7 @@ BENCHMARK(fast_colour)->Arg(2)->UseRealTime()->Unit(benchmark::kMillisecond);
 BENCHMARK(motion)->Arg(2)->UseRealTime()->Unit(benchmark::kMillisecond);
 BENCHMARK(iteration)->Arg(2)->UseRealTime()->Unit(benchmark::kMillisecond);
 BENCHMARK(naive)->Arg(2)->UseRealTime()->Unit(benchmark::kMillisecond);
+BENCHMARK(live)->Arg(1)->Arg(2)->UseRealTime()->Unit(benchmark::kMillisecond);
 BENCHMARK(copy);
 
 }  // namespace

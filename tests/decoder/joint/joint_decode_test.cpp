@@ -294,6 +294,7 @@ TEST_F(JointDecodeTest, RefusesStreamsThatDoNotBelongTogether) {
     add(video, {random_of(1)});
     add(video, {random_of(2)});
     expect_parts(problem(DecodeMethod::kPortz2013), {"0.stipple", "2 sensors", "portz2013"});
+    expect_parts(problem(DecodeMethod::kLive), {"2 sensors, but method live decodes one"});
     views_[1] = {Homography::shift({.row = 40, .col = 0}), 0};
     expect_parts(problem(), {"1.stipple", "sees no pixel"});
     views_[1] = {Homography({0, 0, 0, 0, 0, 0, 0, 0, 1}), 0};
