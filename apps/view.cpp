@@ -1,5 +1,6 @@
 #include <fmt/format.h>
 #include <spawn.h>
+#include <unistd.h>
 
 #include <algorithm>
 #include <array>
@@ -22,8 +23,6 @@
 #include "session/rig_folder.h"
 #include "view/page_server.h"
 #include "view/view_page.h"
-
-extern char** environ;
 
 namespace stipple {
 namespace {

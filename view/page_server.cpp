@@ -148,7 +148,7 @@ struct PageServer::Impl {
             response.set_content("There is nothing of this name.", "text/plain");
             return;
         }
-        for (const auto& [name, value] : answer->fields) response.set_header(name.c_str(), value);
+        for (const auto& [name, value] : answer->fields) response.set_header(name, value);
         response.set_content(answer->body, answer->type);
     }
 

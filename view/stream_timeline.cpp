@@ -34,13 +34,8 @@ void StreamTimeline::run() {
         SaturatedSamples counts(reader_.header());
         for (SamplePacket packet; !ended_;) {
             if (!reader_.next(packet)) {
-                {
-                    const std::lock_guard lock(mutex_);
-                    report_ = reader_.report();
-                }
-                if (reader_.report().complete) return;
-                std::this_thread::sleep_for(kWait);
-                continue;
+                if (wait_for_more()) continue;
+                return;
             }
             const std::uint64_t before = counts.saturated();
             counts.add(packet);
@@ -50,6 +45,16 @@ void StreamTimeline::run() {
         const std::lock_guard lock(mutex_);
         failure_ = e.what();
     }
+}
+
+bool StreamTimeline::wait_for_more() {
+    {
+        const std::lock_guard lock(mutex_);
+        report_ = reader_.report();
+        if (report_.complete) return false;
+    }
+    std::this_thread::sleep_for(kWait);
+    return true;
 }
 
 void StreamTimeline::add(const SamplePacket& packet, std::uint64_t saturated) {

@@ -36,6 +36,8 @@ class StreamTimeline {
         std::int64_t dropped = 0;
     };
     void run();
+    /// At the present end of the file. False if no more comes.
+    bool wait_for_more();
     void add(const SamplePacket& packet, std::uint64_t saturated);
 
     StreamReader reader_;

@@ -60,29 +60,35 @@ std::string filled_page(std::string_view html, const std::vector<PagePart>& part
 
 namespace {
 
-std::string page_of(std::string_view html, std::string_view program, const char* connect,
-                    const std::string& title, const nlohmann::ordered_json& data,
-                    const std::string& planes) {
-    return filled_page(html, {{"@CONNECT@", connect},
-                              {"@TITLE@", html_text(title)},
-                              {"@STYLE@", std::string(page::kStyle)},
-                              {"@SUBTITLE@", ""},  // of the data
-                              {"@LICENCE@", std::string(page::kChartsLicence)},
-                              {"@CHARTS@", std::string(page::kCharts)},
-                              {"@DATA@", script_json(data)},
-                              {"@PLANES@", planes},
-                              {"@PROGRAM@", std::string(program)}});
+/// The parts of a page that do not depend on its data.
+struct PageKind {
+    std::string_view html;
+    std::string_view program;
+    const char* connect;  ///< what it may ask, in a content security policy
+};
+
+std::string page_of(const PageKind& kind, const std::string& title,
+                    const nlohmann::ordered_json& data, const std::string& planes) {
+    return filled_page(kind.html, {{"@CONNECT@", kind.connect},
+                                   {"@TITLE@", html_text(title)},
+                                   {"@STYLE@", std::string(page::kStyle)},
+                                   {"@SUBTITLE@", ""},  // of the data
+                                   {"@LICENCE@", std::string(page::kChartsLicence)},
+                                   {"@CHARTS@", std::string(page::kCharts)},
+                                   {"@DATA@", script_json(data)},
+                                   {"@PLANES@", planes},
+                                   {"@PROGRAM@", std::string(kind.program)}});
 }
 
 }  // namespace
 
 std::string report_page(const std::string& title, const nlohmann::ordered_json& data,
                         const std::vector<PackedPlane>& planes) {
-    return page_of(page::kHtml, page::kProgram, "'none'", title, data, planes_text(planes));
+    return page_of({page::kHtml, page::kProgram, "'none'"}, title, data, planes_text(planes));
 }
 
 std::string view_page(const std::string& title, const nlohmann::ordered_json& data) {
-    return page_of(page::kView, page::kViewProgram, "'self'", title, data, "");
+    return page_of({page::kView, page::kViewProgram, "'self'"}, title, data, "");
 }
 
 std::string chart_warning() {
