@@ -88,6 +88,7 @@ void view(const ViewArguments& arguments, const RunOptions& run) {
     std::fflush(stdout);
     if (arguments.open) open_browser(server.url());
     while (stop_signal() == 0) std::this_thread::sleep_for(std::chrono::milliseconds(100));
+    page.end();
 }
 
 void add_server_options(Command& command, const std::shared_ptr<ViewArguments>& options) {

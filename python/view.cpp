@@ -28,7 +28,13 @@ class Window {
           url_(server_->url()) {}
 
     [[nodiscard]] const std::string& url() const { return url_; }
-    void close() { server_.reset(); }
+    ~Window() { close(); }
+    Window(const Window&) = delete;
+    Window& operator=(const Window&) = delete;
+    void close() {
+        page_.end();
+        server_.reset();
+    }
 
   private:
     ViewPage page_;

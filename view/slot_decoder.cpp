@@ -44,9 +44,14 @@ SlotDecoder::SlotDecoder(ViewedStream& stream, const std::filesystem::path& file
 }
 
 SlotDecoder::~SlotDecoder() {
+    end();
+    thread_.join();
+}
+
+void SlotDecoder::end() {
+    const std::lock_guard lock(mutex_);
     ended_ = true;
     changed_.notify_all();
-    thread_.join();
 }
 
 std::string_view SlotDecoder::name_of(Level level) const {

@@ -48,6 +48,8 @@ class SlotDecoder {
     /// decoded.
     [[nodiscard]] std::optional<Picture> picture(const std::string& viewer, std::int64_t slot,
                                                  Level than, std::chrono::milliseconds wait);
+    /// Ends decoding and waiting, now and later: pictures that are there are given.
+    void end();
     /// What is there of a slot.
     [[nodiscard]] Picture known(std::int64_t slot) const;
     /// "naive", "fast", or the method of blocks.

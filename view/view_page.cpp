@@ -98,6 +98,10 @@ void ViewPage::add_footage(const std::filesystem::path& source, const ViewOption
     videos_.push_back({video.name(), source.string(), {}, nullptr, &video});
 }
 
+void ViewPage::end() {
+    for (SlotDecoder& decoder : decoders_) decoder.end();
+}
+
 std::int64_t ViewPage::slots() {
     std::int64_t slots = 1;
     for (ViewedStream& stream : streams_) slots = std::max(slots, stream.slots());

@@ -55,6 +55,8 @@ class ViewPage {
     /// \throws InputError if a picture cannot be made.
     [[nodiscard]] std::optional<PageAnswer> answer(const PageRequest& request);
 
+    /// Answers at once from now on, with what is there: before its server ends.
+    void end();
     /// Of the longest source, so far.
     [[nodiscard]] std::int64_t slots();
     [[nodiscard]] FrameShape shape() const { return shape_; }

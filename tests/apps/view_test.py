@@ -4,6 +4,7 @@ import http.client
 import json
 import time
 import unittest
+from concurrent.futures import ThreadPoolExecutor
 from urllib.parse import urlencode, urlsplit
 
 import numpy as np
@@ -178,8 +179,12 @@ class ViewTest(ProgramTest):
     def test_a_signal_ends_it(self):
         self.make_clip("--luminance")
         viewer = Viewer(self, "clip.stipple")
-        viewer.program.terminate()
-        self.assertEqual(viewer.program.wait(timeout=20), 143)
+        with ThreadPoolExecutor() as pool:
+            last = pool.submit(viewer.ask, "plane/v0-3", viewer="t", than=3, wait=20000)  # nothing is better
+            time.sleep(0.5)
+            viewer.program.terminate()
+            self.assertEqual(viewer.program.wait(timeout=15), 143)
+            self.assertEqual(last.result()[2], b"")
 
 
 if __name__ == "__main__":
