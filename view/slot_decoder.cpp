@@ -38,14 +38,16 @@ SlotDecoder::SlotDecoder(ViewedStream& stream, const std::filesystem::path& file
       options_(setup.options),
       naive_(whole_frames(stream.header(), DecodeMethod::kNaive)),
       fast_(whole_frames(stream.header(), DecodeMethod::kFast)),
-      session_(file, setup, calibration),
-      thread_([this] { run(); }) {
+      session_(file, setup, calibration) {
     options_.fill_gaps = true;
+    threads_ = {std::thread([this] { run(Level::kNaive); }),
+                std::thread([this] { run(Level::kFast); }),
+                std::thread([this] { run(Level::kBlock); })};
 }
 
 SlotDecoder::~SlotDecoder() {
     end();
-    thread_.join();
+    for (std::thread& thread : threads_) thread.join();
 }
 
 void SlotDecoder::end() {
@@ -119,29 +121,27 @@ bool SlotDecoder::whole_block(std::int64_t slot) const {
     return complete_ || (slot / kCoreSlots + 1) * kCoreSlots + kMaxHaloSlots <= slots_;
 }
 
-// The worst pictures first, so that each viewer has one soon; of these what was asked for last.
-std::optional<SlotDecoder::Task> SlotDecoder::next_task() {
+// Of the viewers that wait for such a picture the one that asked last. A block waits for the
+// quicker pictures of its slot.
+std::optional<SlotDecoder::Task> SlotDecoder::next_task(Level level) {
     std::erase_if(wishes_,
                   [](const auto& wish) { return Clock::now() - wish.second.asked > kForgetAfter; });
-    std::optional<Task> best;
+    std::optional<Task> next;
     Clock::time_point asked;
     for (const auto& [viewer, wish] : wishes_) {
         const Level there = best_of(wish.slot).level;
-        if (there == Level::kBlock || failures_.contains(wish.slot)) continue;
-        const auto next = static_cast<Level>(index_of(there) + 1);
-        if (next == Level::kBlock && !whole_block(wish.slot)) continue;
-        if (best && (next > best->level || (next == best->level && wish.asked < asked))) continue;
-        best = {wish.slot, next};
+        if (there >= level || failures_.contains(wish.slot)) continue;
+        if (level == Level::kBlock && (there < Level::kFast || !whole_block(wish.slot))) continue;
+        if (next && wish.asked < asked) continue;
+        next = {wish.slot, level};
         asked = wish.asked;
     }
-    return best;
+    return next;
 }
 
 bool SlotDecoder::wanted(const Task& task) {
     const std::lock_guard lock(mutex_);
     if (ended_) return false;
-    const auto next = next_task();
-    if (!next || next->level < task.level) return false;
     return std::ranges::any_of(wishes_, [&](const auto& wish) {
         return wish.second.slot == task.slot ||
                (task.level == Level::kBlock &&
@@ -149,12 +149,12 @@ bool SlotDecoder::wanted(const Task& task) {
     });
 }
 
-void SlotDecoder::run() {
+void SlotDecoder::run(Level level) {
     while (!ended_) {
         std::optional<Task> task;
         {
             std::unique_lock lock(mutex_);
-            task = next_task();
+            task = next_task(level);
             if (!task) {
                 changed_.wait_for(lock, std::chrono::seconds(1));
                 continue;

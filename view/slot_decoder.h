@@ -25,7 +25,8 @@ namespace stipple {
 
 /// The pictures of a decoded stream, where they are looked at: one of a few slots at once (`naive`,
 /// then `fast`, of the slots around), and behind it the whole block of `decode`, whose pictures
-/// have its bits. A thread decodes what was asked for last, and drops what nobody waits for.
+/// have its bits. A thread for each level decodes what was asked for last, and drops what nobody
+/// waits for.
 class SlotDecoder {
   public:
     /// How good a picture is; each is better than those before.
@@ -69,11 +70,12 @@ class SlotDecoder {
     /// Learns how far the stream has grown, and forgets the pictures that lacked what came.
     void look_for_more();
     [[nodiscard]] bool whole_block(std::int64_t slot) const;
-    void run();
+    /// Decodes the tasks of a level.
+    void run(Level level);
     void work(const Task& task);
     void decode_slot(const Task& task);
     void decode_block_of(std::int64_t slot);
-    [[nodiscard]] std::optional<Task> next_task();
+    [[nodiscard]] std::optional<Task> next_task(Level level);
     [[nodiscard]] bool wanted(const Task& task);
     void store(std::int64_t slot, Level level, std::span<const float> light);
     [[nodiscard]] Picture best_of(std::int64_t slot) const;
@@ -94,7 +96,7 @@ class SlotDecoder {
     std::int64_t slots_ = 0;  ///< of the stream, so far
     bool complete_ = false;
     std::atomic<bool> ended_ = false;
-    std::thread thread_;  ///< last: starts when all else is there
+    std::array<std::thread, 3> threads_;  ///< last: start when all else is there
 };
 
 }  // namespace stipple
