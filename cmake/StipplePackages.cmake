@@ -50,7 +50,7 @@ set(CPACK_DEBIAN_LIBRARIES_PACKAGE_NAME libstipple-dev)
 set(CPACK_DEBIAN_LIBRARIES_PACKAGE_SECTION libdevel)
 set(CPACK_COMPONENT_LIBRARIES_DEPENDS shared)
 set(stipple_needs
-    libeigen3-dev libfmt-dev libhwy-dev libopencv-core-dev libopencv-imgproc-dev libopenexr-dev libpng-dev libssl-dev
+    libcpp-httplib-dev libeigen3-dev libfmt-dev libhwy-dev libopencv-core-dev libopencv-imgproc-dev libopenexr-dev libpng-dev libssl-dev
     libtbb-dev libtiff-dev libtinyxml2-dev libtomlplusplus-dev nlohmann-json3-dev zlib1g-dev)
 if(STIPPLE_ARAVIS)
     list(APPEND stipple_needs libaravis-dev libusb-1.0-0-dev libxml2-dev)
