@@ -12,7 +12,8 @@
 #include <algorithm>
 #include <cassert>
 #include <cstdint>
-#include <type_traits>
+
+#include "decoder/exposure_chains-inl.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace stipple::HWY_NAMESPACE {
@@ -48,16 +49,6 @@ Slice slice(const Measurements& m, const SiteRun& run, std::size_t slot, const A
             .weight = kWeighted ? &m.weight[voxel] : nullptr,
             .v = arrays.v + voxel,
             .dual = kDual ? arrays.dual + voxel : nullptr};
-}
-
-/// The chains of exposures that are looked at; the voxels of others count as unobserved.
-enum class Chain : std::uint8_t { kOnly, kFirst, kSecond };
-
-template <Chain kChain>
-std::uint8_t state_in(std::uint8_t state) {
-    if (kChain == Chain::kOnly) return state;
-    const bool second = (state & Measurements::kSecond) != 0;
-    return second == (kChain == Chain::kSecond) ? state : 0;
 }
 
 /// Adds a slot to the sums of w v and w^2 step over each exposure, w the weight of a voxel;
@@ -122,18 +113,6 @@ void add_duals(const Measurements& m, const SiteRun& run, const Arrays& arrays) 
         const Slice s = slice<kWeighted, true>(m, run, slot, arrays);
         distribute<kChain, kWeighted>(s, s.dual, correction);
     }
-}
-
-/// Calls body(chain, weighted), both std::integral_constant, for each chain. Chains share no voxel,
-/// so one after the other is both at once.
-template <typename Body>
-void for_each_chain(const Measurements& m, const Body& body) {
-    const auto chains = [&](auto weighted) {
-        if (!m.interleaved) return body(std::integral_constant<Chain, Chain::kOnly>{}, weighted);
-        body(std::integral_constant<Chain, Chain::kFirst>{}, weighted);
-        body(std::integral_constant<Chain, Chain::kSecond>{}, weighted);
-    };
-    m.weight.empty() ? chains(std::false_type{}) : chains(std::true_type{});
 }
 
 void prox_run(const Measurements& m, const SiteRun& run, const float* step, float* v) {

@@ -24,7 +24,7 @@ HWY_INLINE V mul_then_add(V a, V b, V c) {
     return hn::Add(hn::Mul(a, b), c);
 }
 
-/// `horner` (horner.h), step by step.
+/// `horner` (portable_math.h), step by step.
 template <class D, std::size_t n, class V = hn::Vec<D>>
 HWY_INLINE V polynomial(D d, const hn::TFromD<D> (&c)[n], V x) {
     V sum = hn::Set(d, c[n - 1]);

@@ -104,21 +104,20 @@ std::optional<SlotDecoder::Picture> SlotDecoder::picture(const std::string& view
 }
 
 void SlotDecoder::look_for_more() {
-    const std::int64_t slots = stream_.slots();
-    const bool complete = stream_.complete();
+    const ViewedStream::Extent extent = stream_.extent();
     const std::lock_guard lock(mutex_);
-    if (slots > slots_)
-        for (auto at = pictures_.lower_bound(slots_ - kMaxHaloSlots); at != pictures_.end();
+    if (extent.slots > extent_.slots)
+        for (auto at = pictures_.lower_bound(extent_.slots - kMaxHaloSlots); at != pictures_.end();
              at = pictures_.erase(at))
             for (const Codes& old : at->second)
                 if (old) bytes_ -= 2 * old->size();
-    slots_ = slots;
-    complete_ = complete;
+    extent_ = extent;
 }
 
 /// Of a stream that grows a block can be decoded once all of its exposures are there.
 bool SlotDecoder::whole_block(std::int64_t slot) const {
-    return complete_ || (slot / kCoreSlots + 1) * kCoreSlots + kMaxHaloSlots <= slots_;
+    return extent_.complete ||
+           (slot / kCoreSlots + 1) * kCoreSlots + kMaxHaloSlots <= extent_.slots;
 }
 
 // Of the viewers that wait for such a picture the one that asked last. A block waits for the
@@ -189,9 +188,9 @@ void SlotDecoder::decode_slot(const Task& task) {
 }
 
 void SlotDecoder::decode_block_of(std::int64_t slot) {
-    const std::int64_t slots = stream_.slots();
+    const auto [slots, complete] = stream_.extent();
     const std::int64_t block = block_of(slot, slots);
-    const bool last = stream_.complete() && block + 1 == block_count(slots);
+    const bool last = complete && block + 1 == block_count(slots);
     const std::int64_t end = last ? slots : block_begin(block + 1);
     StreamReader& reader = session_.streams().front();
     reader.seek(0);
@@ -207,8 +206,7 @@ void SlotDecoder::decode_block_of(std::int64_t slot) {
 }
 
 void SlotDecoder::store(std::int64_t slot, Level level, std::span<const float> light) {
-    auto codes = std::make_shared<std::vector<std::uint16_t>>(light.size());
-    std::ranges::transform(light, codes->begin(), light_code);
+    auto codes = std::make_shared<const std::vector<std::uint16_t>>(light_codes(light));
     const std::lock_guard lock(mutex_);
     const std::size_t bytes = 2 * light.size();
     while (bytes_ + bytes > kMaxBytes && !pictures_.empty()) {

@@ -92,9 +92,8 @@ class SlotDecoder {
     std::map<std::string, Wish> wishes_;  ///< by viewer
     std::map<std::int64_t, std::array<Codes, 4>> pictures_;
     std::map<std::int64_t, std::string> failures_;
-    std::size_t bytes_ = 0;   ///< of pictures_
-    std::int64_t slots_ = 0;  ///< of the stream, so far
-    bool complete_ = false;
+    std::size_t bytes_ = 0;        ///< of pictures_
+    ViewedStream::Extent extent_;  ///< of the stream, when a viewer asked last
     std::atomic<bool> ended_ = false;
     std::array<std::thread, 3> threads_;  ///< last: start when all else is there
 };

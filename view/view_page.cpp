@@ -14,7 +14,6 @@
 #include "core/text.h"
 #include "core/version.h"
 #include "decoder/measurements.h"
-#include "io/tone_map.h"
 #include "study/report/json_figures.h"
 #include "study/report/report_page.h"
 #include "study/report/stream_samples.h"
@@ -120,14 +119,7 @@ ordered_json ViewPage::data() {
                       {"slots", slots()},
                       {"picture_step", 1},
                       {"camera", nullptr}};
-    json["area"] = {{"rows", shape_.rows},
-                    {"cols", shape_.cols},
-                    {"planes", shape_.planes},
-                    {"first_row", 0},
-                    {"first_col", 0}};
-    json["frame"] = {{"rows", shape_.rows}, {"cols", shape_.cols}};
-    json["light_code"] = {{"darkest", kDarkestCodedLight}, {"codes_per_stop", kCodesPerStop}};
-    json["white_light"] = kWhiteLight;
+    json.update(pictures_json(shape_, {.rows = shape_.rows, .cols = shape_.cols}));
     json["videos"] = ordered_json::array();
     for (const Video& video : videos_)
         json["videos"].push_back({{"name", video.name},
@@ -259,7 +251,7 @@ std::optional<PageAnswer> ViewPage::answer(const PageRequest& request) {
     }
     if (request.path == "status") {
         bool complete = true;
-        for (ViewedStream& stream : streams_) complete = stream.complete() && complete;
+        for (ViewedStream& stream : streams_) complete = stream.extent().complete && complete;
         return json_answer({{"slots", slots()}, {"complete", complete}});
     }
     return {};

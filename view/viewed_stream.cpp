@@ -7,19 +7,12 @@
 #include "core/error.h"
 #include "core/index.h"
 #include "core/parallel.h"
-#include "readout/provenance.h"
-#include "study/report/json_figures.h"
-#include "study/report/run_report.h"
-#include "study/report/schedule_text.h"
 #include "study/report/stream_text.h"
 
 namespace stipple {
 namespace {
 
 using nlohmann::ordered_json;
-
-constexpr int kLanes = 12;
-constexpr std::int64_t kLaneSlots = 64;
 
 PixelArea whole(FrameShape shape) {
     return {.first_row = 0, .first_col = 0, .rows = shape.rows, .cols = shape.cols};
@@ -42,43 +35,32 @@ ViewedStream::ViewedStream(const std::filesystem::path& file, const CalibrationC
       samples_(reader_.header(), whole(reader_.header().shape)) {
     samples_.add_kinds();
     if (const auto known = reader_.slots()) {
-        slots_ = *known;
-        complete_ = true;
+        extent_ = {*known, true};
     }
 }
 
 void ViewedStream::read_on() {
-    if (complete_) return;
+    if (extent_.complete) return;
     next_slot_ = -1;
-    reader_.seek(std::max<std::int64_t>(slots_ - 1, 0));
-    for (SamplePacket packet; reader_.next(packet);) slots_ = std::max(slots_, packet.slot + 1);
-    complete_ = reader_.report().complete;
+    reader_.seek(std::max<std::int64_t>(extent_.slots - 1, 0));
+    for (SamplePacket packet; reader_.next(packet);)
+        extent_.slots = std::max(extent_.slots, packet.slot + 1);
+    extent_.complete = reader_.report().complete;
 }
 
-std::int64_t ViewedStream::slots() {
+ViewedStream::Extent ViewedStream::extent() {
     const std::lock_guard lock(mutex_);
     read_on();
-    return slots_;
-}
-
-bool ViewedStream::complete() {
-    const std::lock_guard lock(mutex_);
-    read_on();
-    return complete_;
+    return extent_;
 }
 
 ordered_json ViewedStream::json() {
     const std::int64_t known = slots();
     const std::lock_guard lock(mutex_);
-    const StreamHeader& header = reader_.header();
-    return {{"name", name_},
-            {"stream", stream_json(header, reader_.report())},
-            {"command", or_null(command_of(header.provenance))},
-            {"filter", filter_json(header.cfa)},
-            {"samples", samples_.json()},
-            {"loads", nullptr},
-            {"lanes", lanes_json(header.schedule, header.shape, kLanes,
-                                 std::clamp(known, std::int64_t{1}, kLaneSlots))}};
+    ordered_json json = run_json(name_, reader_.header(), reader_.report(), known);
+    json["samples"] = samples_.json();
+    json["loads"] = nullptr;
+    return json;
 }
 
 template <typename Take>
@@ -94,8 +76,11 @@ void ViewedStream::visit_packets(std::int64_t first, std::int64_t end, const Tak
 }
 
 ViewedStream::Samples ViewedStream::read_samples(std::int64_t slot) {
-    samples_.clear();
-    visit_packets(slot, slot + 1, [&](const SamplePacket& packet) { samples_.add(packet); });
+    if (slot != held_slot_) {
+        samples_.clear();
+        visit_packets(slot, slot + 1, [&](const SamplePacket& packet) { samples_.add(packet); });
+        held_slot_ = extent_.complete ? slot : -1;  // else the rest of it may come
+    }
     return {{samples_.kinds().begin(), samples_.kinds().end()},
             {samples_.dn().begin(), samples_.dn().end()}};
 }

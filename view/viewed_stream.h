@@ -26,10 +26,13 @@ class ViewedStream {
     [[nodiscard]] const std::string& name() const { return name_; }
     /// A warning that it has no calibration, or empty.
     [[nodiscard]] const Message& warning() const { return warning_; }
-    /// The slots so far. Reads on in a stream without an end.
-    [[nodiscard]] std::int64_t slots();
-    /// Whether no more slots come.
-    [[nodiscard]] bool complete();
+    struct Extent {
+        std::int64_t slots = 0;  ///< so far
+        bool complete = false;   ///< no more slots come
+    };
+    /// Reads on in a stream without an end.
+    [[nodiscard]] Extent extent();
+    [[nodiscard]] std::int64_t slots() { return extent().slots; }
     /// What the page needs to know of it (report_data.js: a run).
     [[nodiscard]] nlohmann::ordered_json json();
 
@@ -62,8 +65,8 @@ class ViewedStream {
     Message warning_;
     SlotSamples samples_;
     std::int64_t next_slot_ = -1;  ///< whose first packet the reader gives next; -1: not known
-    std::int64_t slots_ = 0;       ///< seen
-    bool complete_ = false;
+    std::int64_t held_slot_ = -1;  ///< whose samples samples_ has; -1: of none that is whole
+    Extent extent_;
 };
 
 }  // namespace stipple

@@ -42,9 +42,7 @@ std::vector<std::uint16_t> ViewedVideo::codes(std::int64_t slot) {
     if (slot > next_) reader_->skip(static_cast<int>(slot - next_));
     const auto frame = reader_->next();
     next_ = slot + 1;
-    std::vector<std::uint16_t> codes(frame.size());
-    std::ranges::transform(frame, codes.begin(), light_code);
-    return codes;
+    return light_codes(frame);
 }
 
 }  // namespace stipple

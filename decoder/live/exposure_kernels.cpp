@@ -13,7 +13,8 @@
 #include <algorithm>
 #include <cassert>
 #include <cstddef>
-#include <type_traits>
+
+#include "decoder/exposure_chains-inl.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace stipple::HWY_NAMESPACE {
@@ -55,27 +56,6 @@ Slice slice(const WindowRun& run, int slot) {
 std::size_t window_voxel(const WindowRun& run, int slot) {
     return static_cast<std::size_t>(slot - run.window.begin) * run.measurements.shape.sites() +
            run.sites.begin;
-}
-
-/// The chains of exposures that are looked at; the voxels of others count as unobserved.
-enum class Chain : std::uint8_t { kOnly, kFirst, kSecond };
-
-template <Chain kChain>
-std::uint8_t state_in(std::uint8_t state) {
-    if (kChain == Chain::kOnly) return state;
-    const bool second = (state & Measurements::kSecond) != 0;
-    return second == (kChain == Chain::kSecond) ? state : 0;
-}
-
-/// Calls body(chain, weighted), both std::integral_constant, for each chain. Chains share no voxel.
-template <typename Body>
-void for_each_chain(const Measurements& m, const Body& body) {
-    const auto chains = [&](auto weighted) {
-        if (!m.interleaved) return body(std::integral_constant<Chain, Chain::kOnly>{}, weighted);
-        body(std::integral_constant<Chain, Chain::kFirst>{}, weighted);
-        body(std::integral_constant<Chain, Chain::kSecond>{}, weighted);
-    };
-    m.weight.empty() ? chains(std::false_type{}) : chains(std::true_type{});
 }
 
 /// What is known of an exposure under way at each site.

@@ -47,6 +47,12 @@ std::uint16_t light_code(float light) noexcept {
     return static_cast<std::uint16_t>(1 + std::lround(std::min(steps, 65534.0F)));
 }
 
+std::vector<std::uint16_t> light_codes(std::span<const float> light) {
+    std::vector<std::uint16_t> codes(light.size());
+    std::ranges::transform(light, codes.begin(), light_code);
+    return codes;
+}
+
 double light_of_code(std::uint16_t code) noexcept {
     return code == 0 ? 0 : kDarkestCodedLight * std::exp2((code - 1) / double{kCodesPerStop});
 }

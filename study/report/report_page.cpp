@@ -3,6 +3,7 @@
 #include <cstddef>
 #include <nlohmann/json.hpp>
 
+#include "io/tone_map.h"
 #include "study/report/page_parts.h"
 #include "study/report/run_report.h"
 
@@ -89,6 +90,18 @@ std::string report_page(const std::string& title, const nlohmann::ordered_json& 
 
 std::string view_page(const std::string& title, const nlohmann::ordered_json& data) {
     return page_of({page::kView, page::kViewProgram, "'self'"}, title, data, "");
+}
+
+nlohmann::ordered_json pictures_json(FrameShape frame, const PixelArea& area) {
+    return {{"area",
+             {{"rows", area.rows},
+              {"cols", area.cols},
+              {"planes", frame.planes},
+              {"first_row", area.first_row},
+              {"first_col", area.first_col}}},
+            {"frame", {{"rows", frame.rows}, {"cols", frame.cols}}},
+            {"light_code", {{"darkest", kDarkestCodedLight}, {"codes_per_stop", kCodesPerStop}}},
+            {"white_light", kWhiteLight}};
 }
 
 std::string chart_warning() {

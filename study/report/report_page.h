@@ -9,6 +9,9 @@
 #include <utility>
 #include <vector>
 
+#include "core/geometry.h"
+#include "study/report/report_window.h"
+
 namespace stipple {
 
 /// The most bytes of the page that a plane takes beside its text.
@@ -57,8 +60,13 @@ inline constexpr int kCodesPerStop = 128;
 /// Light on a logarithmic scale: 1 + round(128 log2(light / kDarkestCodedLight)), 0 for less light
 /// and for NaN. The light of a code is within 0.27 % of what was coded.
 [[nodiscard]] std::uint16_t light_code(float light) noexcept;
+/// The same of each value.
+[[nodiscard]] std::vector<std::uint16_t> light_codes(std::span<const float> light);
 /// The light of a code.
 [[nodiscard]] double light_of_code(std::uint16_t code) noexcept;
+
+/// What a page needs to know of its pictures: `area`, `frame`, `light_code` and `white_light`.
+[[nodiscard]] nlohmann::ordered_json pictures_json(FrameShape frame, const PixelArea& area);
 
 /// `values` as text for the page: the difference of each value from that `step` before it (modulo
 /// 2^16, the first ones from 0) with its sign in the lowest bit (2 d, or -2 d - 1 below 0), all low

@@ -15,12 +15,6 @@ namespace {
 
 using nlohmann::ordered_json;
 
-std::string packed_light(const std::vector<float>& light) {
-    std::vector<std::uint16_t> codes(light.size());
-    std::ranges::transform(light, codes.begin(), light_code);
-    return packed_plane(codes);
-}
-
 }  // namespace
 
 ReportVideos::ReportVideos(FrameShape shape, const PixelArea& area, const QualityOptions& quality,
@@ -36,7 +30,7 @@ void ReportVideos::put(std::size_t video, std::int64_t slot, std::span<const flo
     Video& to = videos_[video];
     if (slot % step_ == 0) {
         to.slots.push_back(slot);
-        to.pictures.push_back(packed_light(cropped(frame, shape_, area_)));
+        to.pictures.push_back(packed_plane(light_codes(cropped(frame, shape_, area_))));
         bytes_ += bytes_of_last(to, to.pictures.size());
     }
     if (truth_ == nullptr || slot >= truth_->slots()) return;

@@ -13,14 +13,12 @@
 #include "core/version.h"
 #include "decoder/measurements.h"
 #include "decoder/pixel_response.h"
-#include "io/tone_map.h"
 #include "readout/provenance.h"
 #include "stream/stream_figures.h"
 #include "stream/stream_reader.h"
 #include "study/report/json_figures.h"
 #include "study/report/report_page.h"
 #include "study/report/report_videos.h"
-#include "study/report/schedule_text.h"
 #include "study/report/stream_samples.h"
 #include "study/report/stream_text.h"
 
@@ -28,9 +26,6 @@ namespace stipple {
 namespace {
 
 using nlohmann::ordered_json;
-
-constexpr int kLanes = 12;               ///< pixels of the schedule's diagram
-constexpr std::int64_t kLaneSlots = 64;  ///< the most slots of it
 
 [[noreturn]] void fail_size(std::uint64_t most, std::string_view content) {
     throw InputError(Parameter{"max_size"},
@@ -83,15 +78,9 @@ void Run::read(const RunReportOptions& options) {
 }
 
 ordered_json Run::json() const {
-    const StreamHeader& header = reader.header();
-    const std::string command = command_of(header.provenance);
-    ordered_json json{{"name", name}, {"stream", stream_json(header, reader.report())}};
-    json["command"] = or_null(command);
-    json["filter"] = filter_json(header.cfa);
+    ordered_json json = run_json(name, reader.header(), reader.report(), loads.slots());
     json["samples"] = samples.json();
     json["loads"] = loads.json();
-    json["lanes"] = lanes_json(header.schedule, header.shape, kLanes,
-                               std::min(std::max(loads.slots(), std::int64_t{1}), kLaneSlots));
     return json;
 }
 
@@ -127,14 +116,7 @@ ordered_json RunReport::Impl::data() const {
     json["featured"] = featured;
     json["slots"] = slots;
     json["picture_step"] = videos.step();
-    json["area"] = {{"rows", area.rows},
-                    {"cols", area.cols},
-                    {"planes", shape.planes},
-                    {"first_row", area.first_row},
-                    {"first_col", area.first_col}};
-    json["frame"] = {{"rows", shape.rows}, {"cols", shape.cols}};
-    json["light_code"] = {{"darkest", kDarkestCodedLight}, {"codes_per_stop", kCodesPerStop}};
-    json["white_light"] = kWhiteLight;
+    json.update(pictures_json(shape, area));
     json["quality_options"] = {{"margin", options.quality.margin},
                                {"max_value", nullptr},
                                {"peak", options.quality.peak},

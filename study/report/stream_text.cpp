@@ -6,8 +6,10 @@
 #include <nlohmann/json.hpp>
 #include <utility>
 
+#include "readout/provenance.h"
 #include "stream/stream_figures.h"
 #include "study/report/json_figures.h"
+#include "study/report/schedule_text.h"
 
 namespace stipple {
 namespace {
@@ -62,6 +64,18 @@ nlohmann::ordered_json stream_json(const StreamHeader& header, const StreamRepor
         damage.push_back(json_of([&](const auto& add) { visit_damage_figures(place, add); }));
     json["unlisted_damage"] = report.unlisted_damage;
     return json;
+}
+
+nlohmann::ordered_json run_json(const std::string& name, const StreamHeader& header,
+                                const StreamReport& report, std::int64_t slots) {
+    constexpr int kLanes = 12;               // pixels of the diagram
+    constexpr std::int64_t kLaneSlots = 64;  // the most slots of it
+    return {{"name", name},
+            {"stream", stream_json(header, report)},
+            {"command", or_null(command_of(header.provenance))},
+            {"filter", filter_json(header.cfa)},
+            {"lanes", lanes_json(header.schedule, header.shape, kLanes,
+                                 std::clamp(slots, std::int64_t{1}, kLaneSlots))}};
 }
 
 std::string stream_text(const StreamHeader& header, const StreamReport& report) {
