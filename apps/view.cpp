@@ -4,9 +4,12 @@
 
 #include <algorithm>
 #include <array>
+#include <cerrno>
 #include <chrono>
+#include <cstdio>
 #include <memory>
 #include <string>
+#include <system_error>
 #include <thread>
 #include <vector>
 
@@ -85,10 +88,12 @@ void view(const ViewArguments& arguments, const RunOptions& run) {
                 {"cols", page.shape().cols},
                 {"planes", page.shape().planes}});
     run.say(fmt::format("{}\nOpen this address in a browser. Ctrl-C ends the page.", server.url()));
-    std::fflush(stdout);
+    if (std::fflush(stdout) != 0)  // a page whose address nobody sees
+        throw std::system_error(errno, std::generic_category(), "standard output");
     if (arguments.open) open_browser(server.url());
     while (stop_signal() == 0) std::this_thread::sleep_for(std::chrono::milliseconds(100));
     page.end();
+    throw_if_stopped();
 }
 
 void add_server_options(Command& command, const std::shared_ptr<ViewArguments>& options) {

@@ -25,6 +25,6 @@ struct StreamOpening {
 /// Reads the header of a stream, for which it waits; leaves `window` at the first packet.
 /// \throws InputError as StreamReader.
 [[nodiscard]] StreamOpening open_stream_header(BufferedReader& window, const std::string& where,
-                                            ReadPolicy policy, const WaitForMore& wait);
+                                               ReadPolicy policy, const WaitForMore& wait);
 
 }  // namespace stipple

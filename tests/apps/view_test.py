@@ -2,13 +2,14 @@
 
 import http.client
 import json
+import subprocess
 import time
 import unittest
 from concurrent.futures import ThreadPoolExecutor
 from urllib.parse import urlencode, urlsplit
 
 import numpy as np
-from program import DEVICE, INPUT, USAGE, ProgramTest
+from program import DEVICE, INPUT, PROGRAM, USAGE, ProgramTest
 
 COLS, ROWS, SLOTS = 48, 32, 60
 
@@ -173,6 +174,9 @@ class ViewTest(ProgramTest):
         self.fails(INPUT, ["wide.npy", "96 x 32"], "view", "clip.stipple", "wide.npy")
         self.fails(INPUT, ["gige:192.168.0.5", "capture live"], "view", "gige:192.168.0.5")
         self.fails(USAGE, ["--port"], "view", "clip.stipple", "--port", "0")
+        with open("/dev/full", "w", encoding="utf-8") as full:
+            done = subprocess.run([PROGRAM, "view", "clip.stipple"], cwd=self.folder, stdout=full, stderr=-1, timeout=60)
+        self.assertEqual(done.returncode, DEVICE, done.stderr)  # nobody sees its address
         first = Viewer(self, "clip.stipple")
         self.fails(DEVICE, [f"127.0.0.1:{first.port}", "--port"], "view", "clip.stipple", "--port", first.port)
 
