@@ -8,7 +8,7 @@ namespace stipple::page {
 
 extern const std::string_view kHtml;
 extern const std::string_view kStyle;
-extern const std::string_view kView;         ///< HTML with the marks of kHtml
+extern const std::string_view kView;  ///< HTML with the marks of kHtml
 extern const std::string_view kViewProgram;
 extern const std::string_view kProgram;             ///< all .js files, one after the other
 extern const std::string_view kExploration;         ///< HTML of the page of `stipple explore`
