@@ -9,6 +9,7 @@
 #include "apps/output/text_layout.h"
 #include "apps/subcommands.h"
 #include "capture/camera_search.h"
+#include "capture/capture_figures.h"
 #include "core/text.h"
 #include "stream/plain_text.h"
 #include "study/report/json_figures.h"
@@ -27,17 +28,7 @@ ordered_json features_json(const FeaturesOptions& options,
                            const std::vector<CameraFeature>& features) {
     auto list = ordered_json::array();
     for (const CameraFeature& feature : features)
-        list.push_back({{"name", feature.name},
-                        {"category", feature.category},
-                        {"type", feature.type},
-                        {"access", feature.access},
-                        {"value", or_null(feature.value)},
-                        {"unit", feature.unit},
-                        {"minimum", or_null(feature.minimum)},
-                        {"maximum", or_null(feature.maximum)},
-                        {"increment", or_null(feature.increment)},
-                        {"choices", feature.choices},
-                        {"text", feature.text}});
+        list.push_back(json_of([&](const auto& add) { visit_feature_figures(feature, add); }));
     return {{"address", options.address}, {"features", list}};
 }
 

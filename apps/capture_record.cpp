@@ -1,7 +1,5 @@
-#include <fmt/chrono.h>
 #include <fmt/format.h>
 
-#include <chrono>
 #include <filesystem>
 #include <memory>
 #include <nlohmann/json.hpp>
@@ -23,6 +21,7 @@
 #include "capture/open_camera.h"
 #include "capture/recording/camera_recorder.h"
 #include "capture/recording/coded_recorder.h"
+#include "capture/recording/frame_recording.h"
 #include "io/output_names.h"
 #include "study/report/json_figures.h"
 
@@ -40,14 +39,8 @@ struct RecordArguments {
 
 /// `output`, or a file in it that is named by the time.
 std::filesystem::path file_for(const std::string& output) {
-    std::filesystem::path path(output);
-    if (!std::filesystem::is_directory(path)) return path;
-    // Cameras that a script starts together share the second.
-    const auto now = std::chrono::system_clock::now();
-    const auto ms =
-        std::chrono::duration_cast<std::chrono::milliseconds>(now.time_since_epoch()).count();
-    return path / fmt::format("{:%Y%m%d_%H%M%S}_{:03}.strec",
-                              fmt::gmtime(std::chrono::system_clock::to_time_t(now)), ms % 1000);
+    const std::filesystem::path path(output);
+    return std::filesystem::is_directory(path) ? path / recording_name_now() : path;
 }
 
 nlohmann::ordered_json recording_json(const std::string& file, const CameraRecording& recording) {

@@ -13,19 +13,24 @@
 #include <thread>
 #include <vector>
 
+#include "apps/arguments/camera.h"
 #include "apps/arguments/common_options.h"
 #include "apps/arguments/footage.h"
+#include "apps/arguments/sensor.h"
 #include "apps/interrupt.h"
 #include "apps/output/json_file.h"
 #include "apps/output/own_command.h"
+#include "apps/output/session_report.h"
 #include "apps/standard_streams.h"
 #include "apps/subcommands.h"
 #include "capture/camera_kind.h"
+#include "capture/open_camera.h"
 #include "core/error.h"
 #include "decoder/decode_method.h"
 #include "session/rig_folder.h"
 #include "view/page_server.h"
 #include "view/view_page.h"
+#include "view/viewed_camera.h"
 
 namespace stipple {
 namespace {
@@ -36,31 +41,56 @@ struct ViewArguments {
     std::string method = "best";
     std::string calibration;  ///< as calibration_choice
     FootageOptions footage;
+    CameraArguments camera;  ///< but its address
+    SensorChoice sensor;     ///< that is emulated
+    double black_level_dn = 0;
+    std::string folder = ".";  ///< of recordings
     PageServerOptions server;
     bool open = false;
 };
 
-/// \throws InputError for what a page does not show yet.
-void check_source(const std::string& source) {
-    const auto is_of = [&](const CameraKind& kind) {
+bool is_running_camera(const std::string& source) {
+    return std::ranges::any_of(camera_kinds(), [&](const CameraKind& kind) {
         return source.starts_with(std::string(kind.prefix) + ":") && !kind.is_replay;
-    };
-    if (std::ranges::any_of(camera_kinds(), is_of))
-        throw InputError(source,
-                         "a page shows files; write the camera's stream with \"stipple capture "
-                         "live\", and view that file while it grows");
+    });
+}
+
+/// \throws InputError for what a page does not show.
+void check_source(const std::string& source) {
+    if (is_running_camera(source))
+        throw InputError(source, "a running camera has a page of its own; leave the others out");
     if (is_rig_folder(source))
         throw InputError(source, "is a rig; a page shows its streams, or its decoded video");
 }
 
-ViewOptions view_options(const ViewArguments& arguments) {
+/// Null if the sources are files.
+std::unique_ptr<ViewedCamera> open_viewed_camera(const ViewArguments& arguments) {
+    if (arguments.sources.size() != 1 || !is_running_camera(arguments.sources.front())) return {};
+    const std::string& address = arguments.sources.front();
+    return std::make_unique<ViewedCamera>(ViewedCameraOptions{
+        .address = address,
+        .open =
+            [address, buffers = arguments.camera.buffers](const CameraSettings& settings) {
+                return interruptible([=] { return open_image_camera(address, settings, buffers); });
+            },
+        .settings = camera_settings(arguments.camera),
+        .sensor = arguments.sensor,
+        .black_level_dn = arguments.black_level_dn,
+        .folder = arguments.folder,
+        .tell = say_event,
+        .warn = [](const Message& warning) { say_warning(warning); }});
+}
+
+ViewOptions view_options(const ViewArguments& arguments, ViewedCamera* camera) {
     ViewOptions options{.sources = {},
+                        .camera = camera,
                         .truth = arguments.truth,
                         .footage = arguments.footage,
                         .decoding = read_decode_setup(arguments.method, Config({})),
                         .calibration = calibration_choice(arguments.calibration),
                         .command = own_command(),
                         .warn = [](const Message& warning) { say_warning(warning); }};
+    if (camera != nullptr) return options;
     for (const std::string& source : arguments.sources) {
         check_source(source);
         options.sources.emplace_back(source);
@@ -79,7 +109,8 @@ void open_browser(std::string url) {
 
 void view(const ViewArguments& arguments, const RunOptions& run) {
     JsonFile json(run);
-    ViewPage page(view_options(arguments));
+    const auto camera = open_viewed_camera(arguments);
+    ViewPage page(view_options(arguments, camera.get()));
     const PageServer server(arguments.server,
                             [&](const PageRequest& request) { return page.answer(request); });
     json.write({{"url", server.url()},
@@ -94,6 +125,23 @@ void view(const ViewArguments& arguments, const RunOptions& run) {
     while (stop_signal() == 0) std::this_thread::sleep_for(std::chrono::milliseconds(100));
     page.end();
     throw_if_stopped();
+}
+
+void add_running_camera_options(Command& command, ViewArguments& options) {
+    add_camera_options(command, options.camera);
+    add_sensor_arguments(command, options.sensor);
+    auto sections = sensor_sections(options.sensor);
+    sections.push_back({"camera", &options.camera.settings});
+    add_settings(command, std::move(sections),
+                 "of a running camera: set one of its features, or change a key of the sensor or "
+                 "of the schedule that are emulated");
+    command.add_option("--black-level", options.black_level_dn, "DN without light")
+        .shows_default()
+        .check(number_check(0))
+        .type_name("DN");
+    command.add_option("--recordings", options.folder, "folder of recordings of the camera")
+        .default_text("the current one")
+        .type_name("DIR");
 }
 
 void add_server_options(Command& command, const std::shared_ptr<ViewArguments>& options) {
@@ -117,7 +165,8 @@ void add_view(Command& app, Action& action) {
     const auto options = std::make_shared<ViewArguments>();
     command
         .add_option("SOURCE", options->sources,
-                    "sample streams, whole or growing; footage, decoded videos, recordings")
+                    "sample streams, whole or growing; footage, decoded videos, recordings; or a "
+                    "running camera")
         .required()
         .input();
     command.add_option("--truth", options->truth, "footage that the sensor saw")
@@ -132,14 +181,21 @@ void add_view(Command& app, Action& action) {
                     "calibration of the chip, or \"none\"; default: the file beside the stream")
         .type_name("FILE");
     add_footage_arguments(command, options->footage);
+    add_running_camera_options(command, *options);
     add_server_options(command, options);
     add_threads(command, action.options);
     command.footer(
         "Examples:\n"
         "  stipple view clip.stipple --truth scene --open\n"
         "  stipple view live.stipple --method fast\n"
+        "  stipple view gige:192.168.0.5 --sensor lux2100 --set camera.ExposureTime=2000\n"
         "The address has a random token; who does not know it sees nothing.");
-    set_action(command, action, options, view);
+    set_action(command, action, options, view, [command, options] {
+        if (std::ranges::none_of(options->sources, is_running_camera))
+            command.refuse({"--config", "--buffers", "--sensor", "--schedule", "--seed",
+                            "--overrun", "--set", "--black-level", "--recordings"},
+                           "there is no running camera; leave it out");
+    });
 }
 
 }  // namespace stipple

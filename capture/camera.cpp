@@ -25,6 +25,10 @@ double number_of(const CameraDescription& camera, const char* feature) {
 
 }  // namespace
 
+void Camera::set(const std::string& feature, const std::string&) {
+    throw InputError(feature, "a replay has no settings");
+}
+
 void FramePool::reserve(std::size_t frames, std::size_t bytes) {
     const std::lock_guard lock(mutex_);
     frames_ = frames;

@@ -112,6 +112,10 @@ class Camera {
     /// Waits for the next frame. Faults of a streaming device never throw.
     [[nodiscard]] virtual Arrival wait(std::chrono::milliseconds timeout) = 0;
     virtual void stop() noexcept = 0;
+    /// Sets a feature or control while frames come; later frames have it. \throws InputError if
+    /// there is no such setting, its value is out of range, or it changes the layout of frames;
+    /// DeviceError if the device refuses.
+    virtual void set(const std::string& feature, const std::string& value);
 
     /// Payloads of later frames have the memory of `pool`, which must outlive the camera. By
     /// default each frame has memory of its own.

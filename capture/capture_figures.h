@@ -2,6 +2,7 @@
 
 #include <cstddef>
 
+#include "capture/camera_search.h"
 #include "capture/capture_session.h"
 #include "capture/live_emulator.h"
 #include "core/nested_figures.h"
@@ -28,6 +29,22 @@ void visit_transport_figures(const TransportCounts& counts, const Add& add) {
     add("socket_drops", counts.socket_drops);
     add("link_faults", counts.link_faults);
     add("size_mismatches", counts.size_mismatches);
+}
+
+/// A feature of a camera (`capture features`).
+template <typename Add>
+void visit_feature_figures(const CameraFeature& feature, const Add& add) {
+    add("name", feature.name);
+    add("category", feature.category);
+    add("type", feature.type);
+    add("access", feature.access);
+    add("value", feature.value);
+    add("unit", feature.unit);
+    add("minimum", feature.minimum);
+    add("maximum", feature.maximum);
+    add("increment", feature.increment);
+    add("choices", feature.choices);
+    add("text", feature.text);
 }
 
 /// Results of a live emulation.

@@ -282,6 +282,18 @@ SessionEvent CaptureSession::next(std::chrono::milliseconds timeout) {
     return impl_->camera ? impl_->wait_for_frame(timeout) : impl_->wait_for_camera(timeout);
 }
 
+void CaptureSession::set(const std::string& feature, const std::string& value) {
+    for (const char* of_layout : {"Width", "Height", "Offset", "PixelFormat", "Binning",
+                                  "Decimation", "Input", "BufferMemory"})
+        if (feature.starts_with(of_layout))
+            throw InputError(feature, "cannot change while frames come; start again with " +
+                                          Parameter{"set", "camera." + feature + "=" + value});
+    if (!impl_->camera) throw DeviceError(feature, "the camera is lost");
+    impl_->camera->set(feature, value);
+    impl_->description = impl_->camera->description();
+    impl_->first_frame.reset();  // its period may be another one from now on
+}
+
 void CaptureSession::give_back(std::vector<std::uint8_t>&& payload) {
     impl_->pool.give_back(std::move(payload));
 }

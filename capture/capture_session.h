@@ -113,6 +113,10 @@ class CaptureSession {
     /// Number of payloads that this memory was not enough for.
     [[nodiscard]] std::uint64_t late_allocations() const;
 
+    /// Sets a feature of the camera, as Camera::set. \throws InputError also for a feature that
+    /// changes the layout of frames; DeviceError if the camera is lost.
+    void set(const std::string& feature, const std::string& value);
+
     /// A delivered frame was dropped by a full queue: it counts as missing before the next one.
     void count_queue_drop(const FrameRecord& record) noexcept;
 

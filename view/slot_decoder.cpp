@@ -38,16 +38,29 @@ SlotDecoder::SlotDecoder(ViewedStream& stream, const std::filesystem::path& file
       options_(setup.options),
       naive_(whole_frames(stream.header(), DecodeMethod::kNaive)),
       fast_(whole_frames(stream.header(), DecodeMethod::kFast)),
-      session_(file, setup, calibration) {
+      session_(std::in_place, file, setup, calibration) {
     options_.fill_gaps = true;
-    threads_ = {std::thread([this] { run(Level::kNaive); }),
-                std::thread([this] { run(Level::kFast); }),
-                std::thread([this] { run(Level::kBlock); })};
+    start();
+    threads_[2] = std::thread([this] { run(Level::kBlock); });
+}
+
+SlotDecoder::SlotDecoder(ViewedStream& stream)
+    : stream_(stream),
+      method_(DecodeMethod::kFast),
+      naive_(whole_frames(stream.header(), DecodeMethod::kNaive)),
+      fast_(whole_frames(stream.header(), DecodeMethod::kFast)) {
+    start();
+}
+
+void SlotDecoder::start() {
+    threads_[0] = std::thread([this] { run(Level::kNaive); });
+    threads_[1] = std::thread([this] { run(Level::kFast); });
 }
 
 SlotDecoder::~SlotDecoder() {
     end();
-    for (std::thread& thread : threads_) thread.join();
+    for (std::thread& thread : threads_)
+        if (thread.joinable()) thread.join();
 }
 
 void SlotDecoder::end() {
@@ -104,7 +117,7 @@ std::optional<SlotDecoder::Picture> SlotDecoder::picture(const std::string& view
 }
 
 void SlotDecoder::look_for_more() {
-    const ViewedStream::Extent extent = stream_.extent();
+    const SlotExtent extent = stream_.extent();
     const std::lock_guard lock(mutex_);
     if (extent.slots > extent_.slots)
         for (auto at = pictures_.lower_bound(extent_.slots - kMaxHaloSlots); at != pictures_.end();
@@ -188,11 +201,11 @@ void SlotDecoder::decode_slot(const Task& task) {
 }
 
 void SlotDecoder::decode_block_of(std::int64_t slot) {
-    const auto [slots, complete] = stream_.extent();
-    const std::int64_t block = block_of(slot, slots);
-    const bool last = complete && block + 1 == block_count(slots);
-    const std::int64_t end = last ? slots : block_begin(block + 1);
-    StreamReader& reader = session_.streams().front();
+    const SlotExtent extent = stream_.extent();
+    const std::int64_t block = block_of(slot, extent.slots);
+    const bool last = extent.complete && block + 1 == block_count(extent.slots);
+    const std::int64_t end = last ? extent.slots : block_begin(block + 1);
+    StreamReader& reader = session_->streams().front();
     reader.seek(0);
     options_.first_slot = block_begin(block);
     const Task task{slot, Level::kBlock};

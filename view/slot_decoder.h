@@ -35,6 +35,8 @@ class SlotDecoder {
     /// `stream` must outlive this; `file` is its file. \throws InputError as DecodeSession.
     SlotDecoder(ViewedStream& stream, const std::filesystem::path& file, const DecodeSetup& setup,
                 const CalibrationChoice& calibration);
+    /// Of a camera: there are no blocks.
+    explicit SlotDecoder(ViewedStream& stream);
     ~SlotDecoder();
     SlotDecoder(const SlotDecoder&) = delete;
     SlotDecoder& operator=(const SlotDecoder&) = delete;
@@ -75,6 +77,7 @@ class SlotDecoder {
     void work(const Task& task);
     void decode_slot(const Task& task);
     void decode_block_of(std::int64_t slot);
+    void start();
     [[nodiscard]] std::optional<Task> next_task(Level level);
     [[nodiscard]] bool wanted(const Task& task);
     void store(std::int64_t slot, Level level, std::span<const float> light);
@@ -85,15 +88,15 @@ class SlotDecoder {
     DecodeOptions options_;
     PreviewDecoder naive_;
     PreviewDecoder fast_;
-    DecodeSession session_;  ///< of the blocks
+    std::optional<DecodeSession> session_;  ///< of the blocks
 
     mutable std::mutex mutex_;
     std::condition_variable changed_;
     std::map<std::string, Wish> wishes_;  ///< by viewer
     std::map<std::int64_t, std::array<Codes, 4>> pictures_;
     std::map<std::int64_t, std::string> failures_;
-    std::size_t bytes_ = 0;        ///< of pictures_
-    ViewedStream::Extent extent_;  ///< of the stream, when a viewer asked last
+    std::size_t bytes_ = 0;  ///< of pictures_
+    SlotExtent extent_;      ///< of the stream, when a viewer asked last
     std::atomic<bool> ended_ = false;
     std::array<std::thread, 3> threads_;  ///< last: start when all else is there
 };

@@ -61,7 +61,9 @@ std::optional<PlaneId> parsed(std::string_view id) {
 
 }  // namespace
 
-ViewPage::ViewPage(const ViewOptions& options) : command_(options.command) {
+ViewPage::ViewPage(const ViewOptions& options)
+    : command_(options.command), camera_(options.camera) {
+    if (camera_ != nullptr) add_camera(*camera_);
     for (const auto& source : options.sources)
         is_stream(source) ? add_stream(source, options) : add_footage(source, options);
     if (!options.truth.empty()) {
@@ -69,7 +71,7 @@ ViewPage::ViewPage(const ViewOptions& options) : command_(options.command) {
         add_footage(options.truth, options);
         videos_.back().name = "truth";
     }
-    title_ = options.sources.front().filename().string();
+    if (camera_ == nullptr) title_ = options.sources.front().filename().string();
 }
 
 void ViewPage::require_shape(FrameShape shape, const std::filesystem::path& source) {
@@ -79,34 +81,61 @@ void ViewPage::require_shape(FrameShape shape, const std::filesystem::path& sour
 }
 
 void ViewPage::add_stream(const std::filesystem::path& file, const ViewOptions& options) {
-    ViewedStream& stream = streams_.emplace_back(file, options.calibration);
-    require_shape(decoded_shape(stream.header()), file);
-    if (!stream.warning().empty()) {
-        options.warn(stream.warning());
-        notes_.push_back(stream.warning().text());
+    StreamReader reader(file);
+    if (const Message warning = calibrate(reader, options.calibration); !warning.empty()) {
+        options.warn(warning);
+        notes_.push_back(warning.text());
     }
+    ViewedStream& stream = streams_.emplace_back(std::make_unique<FilePackets>(std::move(reader)),
+                                                 file.stem().string());
+    require_shape(decoded_shape(stream.header()), file);
     timelines_.emplace_back(file);
     SlotDecoder& decoder =
         decoders_.emplace_back(stream, file, options.decoding, options.calibration);
-    videos_.push_back({stream.name(), fmt::format("{}, decoded", file.string()),
-                       streams_.size() - 1, &decoder, nullptr});
+    videos_.push_back(
+        {stream.name(), fmt::format("{}, decoded", file.string()), streams_.size() - 1, &decoder});
+}
+
+void ViewPage::add_camera(ViewedCamera& camera) {
+    RecentSlots& recent = camera.recent();
+    title_ = camera.name();
+    shape_ = decoded_shape(recent.header());
+    videos_.push_back({"camera", camera.address(), {}, nullptr, [&recent](std::int64_t slot) {
+                           return recent.codes(slot);
+                       }});
+    ViewedStream& stream =
+        streams_.emplace_back(std::make_unique<RecentPackets>(recent), "emulated");
+    videos_.push_back({"decoded", camera.address() + ", through the emulated chip", 0,
+                       &decoders_.emplace_back(stream)});
 }
 
 void ViewPage::add_footage(const std::filesystem::path& source, const ViewOptions& options) {
     ViewedVideo& video = footage_.emplace_back(source, options.footage, options.warn);
     require_shape(video.shape(), source);
-    videos_.push_back({video.name(), source.string(), {}, nullptr, &video});
+    videos_.push_back({video.name(), source.string(), {}, nullptr, [&video](std::int64_t slot) {
+                           return video.codes(slot);
+                       }});
 }
 
 void ViewPage::end() {
+    ended_ = true;
     for (SlotDecoder& decoder : decoders_) decoder.end();
 }
 
 std::int64_t ViewPage::slots() {
-    std::int64_t slots = 1;
-    for (ViewedStream& stream : streams_) slots = std::max(slots, stream.slots());
-    for (const ViewedVideo& video : footage_) slots = std::max(slots, video.slots());
-    return slots;
+    return extent().slots;
+}
+
+SlotExtent ViewPage::extent() {
+    SlotExtent all{.slots = 1, .complete = true};
+    for (ViewedStream& stream : streams_) {
+        const SlotExtent extent = stream.extent();
+        all.slots = std::max(all.slots, extent.slots);
+        all.complete = all.complete && extent.complete;
+        all.first = extent.first;  // only a camera, the one source, forgets
+    }
+    for (const ViewedVideo& video : footage_) all.slots = std::max(all.slots, video.slots());
+    return all;
 }
 
 ordered_json ViewPage::data() {
@@ -118,7 +147,9 @@ ordered_json ViewPage::data() {
                       {"featured", 0},
                       {"slots", slots()},
                       {"picture_step", 1},
-                      {"camera", nullptr}};
+                      {"camera", nullptr},
+                      {"running_camera", camera_ == nullptr ? ordered_json(nullptr)
+                                                            : ordered_json(camera_->address())}};
     json.update(pictures_json(shape_, {.rows = shape_.rows, .cols = shape_.cols}));
     json["videos"] = ordered_json::array();
     for (const Video& video : videos_)
@@ -137,7 +168,7 @@ std::string ViewPage::html() {
 
 std::optional<PageAnswer> ViewPage::picture(const Video& video, std::int64_t slot,
                                             const PageRequest& request) {
-    if (video.footage != nullptr) return plane_answer(video.footage->codes(slot));
+    if (video.codes) return plane_answer(video.codes(slot));
     using Level = SlotDecoder::Level;
     const auto than = std::clamp<std::int64_t>(request.number("than").value_or(0), 0, 3);
     const auto wait = std::clamp<std::int64_t>(request.number("wait").value_or(0), 0, kMaxWaitMs);
@@ -154,7 +185,9 @@ std::optional<PageAnswer> ViewPage::picture(const Video& video, std::int64_t slo
 
 std::optional<PageAnswer> ViewPage::plane(const std::string& id, const PageRequest& request) {
     const auto wanted = parsed(id);
-    if (!wanted || wanted->slot >= slots()) return {};
+    if (!wanted) return {};
+    const SlotExtent now = extent();
+    if (wanted->slot < now.first || wanted->slot >= now.slots) return {};
     if (wanted->kind == 'v' && wanted->of == 0 && wanted->number < videos_.size())
         return picture(videos_[wanted->number], wanted->slot, request);
     if (wanted->kind != 'r' || wanted->number >= streams_.size()) return {};
@@ -224,8 +257,8 @@ std::optional<PageAnswer> ViewPage::light(const PageRequest& request) {
         index(pixel->plane) * shape_.pixels() + row_major(pixel->row, pixel->col, shape_.cols);
     ordered_json list = ordered_json::array();
     for (std::int64_t slot = pixel->first; slot < pixel->end; ++slot) {
-        if (video.footage != nullptr) {
-            if (const auto codes = video.footage->codes(slot); !codes.empty())
+        if (video.codes) {
+            if (const auto codes = video.codes(slot); !codes.empty())
                 list.push_back({slot, codes[at]});
         } else if (const auto known = video.decoder->known(slot); known.codes) {
             list.push_back({slot, (*known.codes)[at]});
@@ -234,14 +267,50 @@ std::optional<PageAnswer> ViewPage::light(const PageRequest& request) {
     return json_answer(list);
 }
 
+PageAnswer ViewPage::status(const PageRequest& request) {
+    const auto wait = std::clamp<std::int64_t>(request.number("wait").value_or(0), 0, kMaxWaitMs);
+    const auto than = request.number("than").value_or(-1);
+    const auto end = std::chrono::steady_clock::now() + std::chrono::milliseconds(wait);
+    SlotExtent now = extent();
+    while (now.slots <= than && !now.complete && !ended_ &&
+           std::chrono::steady_clock::now() < end) {
+        std::this_thread::sleep_for(std::chrono::milliseconds(5));
+        now = extent();
+    }
+    return json_answer({{"slots", now.slots}, {"first", now.first}, {"complete", now.complete}});
+}
+
+std::optional<PageAnswer> ViewPage::ask_camera(const std::string& what) {
+    if (what == "camera") return json_answer(camera_->status());
+    if (what == "camera/features") return json_answer(camera_->features());
+    return {};
+}
+
+std::optional<PageAnswer> ViewPage::act(const PageRequest& request) {
+    if (camera_ == nullptr) return {};
+    const auto key = [&](const char* name) {
+        const auto found = request.keys.find(name);
+        return found == request.keys.end() ? std::string() : found->second;
+    };
+    if (request.path == "camera/record")
+        camera_->record();
+    else if (request.path == "camera/stop")
+        camera_->stop_recording();
+    else if (request.path == "camera/set")
+        camera_->set(key("feature"), key("value"));
+    else
+        return {};
+    return json_answer(camera_->status());
+}
+
 std::optional<PageAnswer> ViewPage::answer(const PageRequest& request) {
     constexpr std::string_view kPlane = "plane/";
-    if (request.acts) return {};
+    if (request.acts) return act(request);
     if (request.path.empty()) return PageAnswer{"text/html; charset=utf-8", html()};
     if (request.path.starts_with(kPlane)) return plane(request.path.substr(kPlane.size()), request);
     if (request.path == "samples") return samples(request);
     if (request.path == "light") return light(request);
-    if (request.path == "timeline")
+    if (request.path == "timeline" && camera_ == nullptr)
         if (const auto run = run_of(request)) return json_answer(timelines_[*run].json());
     if (request.path == "readout") {
         const auto run = run_of(request);
@@ -249,11 +318,8 @@ std::optional<PageAnswer> ViewPage::answer(const PageRequest& request) {
         if (!run || slot < 0 || slot >= slots()) return {};
         return json_answer(readout_lanes_json(streams_[*run].header(), slot));
     }
-    if (request.path == "status") {
-        bool complete = true;
-        for (ViewedStream& stream : streams_) complete = stream.extent().complete && complete;
-        return json_answer({{"slots", slots()}, {"complete", complete}});
-    }
+    if (request.path == "status") return status(request);
+    if (camera_ != nullptr) return ask_camera(request.path);
     return {};
 }
 

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <atomic>
 #include <cstdint>
 #include <deque>
 #include <filesystem>
@@ -16,6 +17,7 @@
 #include "view/page_server.h"
 #include "view/slot_decoder.h"
 #include "view/stream_timeline.h"
+#include "view/viewed_camera.h"
 #include "view/viewed_stream.h"
 #include "view/viewed_video.h"
 
@@ -24,6 +26,7 @@ namespace stipple {
 /// What a page shows.
 struct ViewOptions {
     std::vector<std::filesystem::path> sources;  ///< sample streams, and footage or decoded videos
+    ViewedCamera* camera = nullptr;              ///< in place of sources
     std::filesystem::path truth = {};            ///< footage that the sensor saw; empty: none
     FootageOptions footage = {};
     DecodeSetup decoding = {};  ///< of the blocks
@@ -42,7 +45,8 @@ class ViewPage {
 
     /// Answers what page/served.js asks for:
     /// - "": the page;
-    /// - "status": JSON, the `slots` so far and whether the streams are `complete`;
+    /// - "status" ("than", "wait"): JSON, the `slots` so far, the `first` that is not forgotten,
+    ///   and whether the streams are `complete`; waits `wait` ms for more slots than `than`;
     /// - "plane/v0-12", ("viewer", "than", "wait"): light_code of slot 12 of video 0, 16 bits each,
     ///   little-endian; of a decoded one better than level `than`, for which it waits `wait` ms, or
     ///   no bytes;
@@ -51,6 +55,8 @@ class ViewPage {
     /// - "samples" ("run", "row", "col", "first", "end"): JSON, ViewedStream::samples_of_pixel;
     /// - "timeline" ("run"): JSON, StreamTimeline::json;
     /// - "readout" ("run", "slot"): JSON, readout_lanes_json;
+    /// - "camera", "camera/features": JSON, ViewedCamera::status and features; the acts
+    ///   "camera/record", "camera/stop" and "camera/set" ("feature", "value");
     /// - "light" ("video", "row", "col", "plane", "first", "end"): JSON, [slot, code] where known.
     /// \throws InputError if a picture cannot be made.
     [[nodiscard]] std::optional<PageAnswer> answer(const PageRequest& request);
@@ -67,11 +73,16 @@ class ViewPage {
         std::string text;
         std::optional<std::size_t> run;  ///< decoded from it
         SlotDecoder* decoder = nullptr;
-        ViewedVideo* footage = nullptr;
+        std::function<std::vector<std::uint16_t>(std::int64_t slot)> codes = {};  ///< no decoder
     };
+    void add_camera(ViewedCamera& camera);
     void add_stream(const std::filesystem::path& file, const ViewOptions& options);
     void add_footage(const std::filesystem::path& source, const ViewOptions& options);
     void require_shape(FrameShape shape, const std::filesystem::path& source);
+    [[nodiscard]] SlotExtent extent();
+    [[nodiscard]] PageAnswer status(const PageRequest& request);
+    [[nodiscard]] std::optional<PageAnswer> ask_camera(const std::string& what);
+    [[nodiscard]] std::optional<PageAnswer> act(const PageRequest& request);
     [[nodiscard]] nlohmann::ordered_json data();
     [[nodiscard]] std::string html();
     [[nodiscard]] std::optional<PageAnswer> plane(const std::string& id,
@@ -84,10 +95,12 @@ class ViewPage {
 
     std::string title_;
     std::string command_;
+    ViewedCamera* camera_;
+    std::atomic<bool> ended_ = false;
     FrameShape shape_{};
     std::vector<std::string> notes_;
     std::deque<ViewedStream> streams_;
-    std::deque<StreamTimeline> timelines_;  ///< of streams_
+    std::deque<StreamTimeline> timelines_;  ///< of streams_, but a camera's
     std::deque<ViewedVideo> footage_;
     std::deque<SlotDecoder> decoders_;  ///< of streams_, which they use
     std::vector<Video> videos_;

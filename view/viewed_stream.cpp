@@ -18,67 +18,36 @@ PixelArea whole(FrameShape shape) {
     return {.first_row = 0, .first_col = 0, .rows = shape.rows, .cols = shape.cols};
 }
 
-StreamReader opened(const std::filesystem::path& file) {
-    StreamReader reader(file);
-    if (reader.header().schedule.weighted())
-        throw InputError(file.string(),
-                         "a page shows no grey masks; \"stipple decode\" takes this stream");
-    return reader;
-}
-
 }  // namespace
 
-ViewedStream::ViewedStream(const std::filesystem::path& file, const CalibrationChoice& calibration)
-    : reader_(opened(file)),
-      name_(file.stem().string()),
-      warning_(calibrate(reader_, calibration)),
-      samples_(reader_.header(), whole(reader_.header().shape)) {
+ViewedStream::ViewedStream(std::unique_ptr<PacketSource> source, std::string name)
+    : source_(std::move(source)),
+      name_(std::move(name)),
+      samples_(source_->header(), whole(source_->header().shape)) {
+    if (header().schedule.weighted())
+        throw InputError(name_, "a page shows no grey masks; \"stipple decode\" takes this stream");
     samples_.add_kinds();
-    if (const auto known = reader_.slots()) {
-        extent_ = {*known, true};
-    }
 }
 
-void ViewedStream::read_on() {
-    if (extent_.complete) return;
-    next_slot_ = -1;
-    reader_.seek(std::max<std::int64_t>(extent_.slots - 1, 0));
-    for (SamplePacket packet; reader_.next(packet);)
-        extent_.slots = std::max(extent_.slots, packet.slot + 1);
-    extent_.complete = reader_.report().complete;
-}
-
-ViewedStream::Extent ViewedStream::extent() {
+SlotExtent ViewedStream::extent() {
     const std::lock_guard lock(mutex_);
-    read_on();
+    extent_ = source_->extent();
     return extent_;
 }
 
 ordered_json ViewedStream::json() {
     const std::int64_t known = slots();
     const std::lock_guard lock(mutex_);
-    ordered_json json = run_json(name_, reader_.header(), reader_.report(), known);
+    ordered_json json = run_json(name_, header(), source_->report(), known);
     json["samples"] = samples_.json();
     json["loads"] = nullptr;
     return json;
 }
 
-template <typename Take>
-void ViewedStream::visit_packets(std::int64_t first, std::int64_t end, const Take& take) {
-    if (first != next_slot_) reader_.seek(first);
-    next_slot_ = -1;
-    for (SamplePacket packet; next_slot_ != end && reader_.next(packet) && packet.slot < end;) {
-        if (packet.slot >= first) take(packet);
-        const bool last = packet.first_row + packet.rows == reader_.header().shape.rows;
-        next_slot_ = last ? packet.slot + 1 : -1;
-    }
-    if (next_slot_ != end) next_slot_ = -1;
-}
-
 ViewedStream::Samples ViewedStream::read_samples(std::int64_t slot) {
     if (slot != held_slot_) {
         samples_.clear();
-        visit_packets(slot, slot + 1, [&](const SamplePacket& packet) { samples_.add(packet); });
+        source_->visit(slot, slot + 1, [&](const SamplePacket& packet) { samples_.add(packet); });
         held_slot_ = extent_.complete ? slot : -1;  // else the rest of it may come
     }
     return {{samples_.kinds().begin(), samples_.kinds().end()},
@@ -91,7 +60,7 @@ ViewedStream::Samples ViewedStream::samples(std::int64_t slot) {
 }
 
 std::vector<std::uint16_t> ViewedStream::exposure_map(std::int64_t slot) const {
-    const StreamHeader& header = reader_.header();
+    const StreamHeader& header = source_->header();
     const ExposureSchedule& schedule = header.schedule;
     const int period = schedule.period_slots();
     const auto phase = static_cast<int>(slot % period);
@@ -112,7 +81,7 @@ std::vector<std::uint16_t> ViewedStream::exposure_map(std::int64_t slot) const {
 ordered_json ViewedStream::samples_of_pixel(int row, int col, std::int64_t first,
                                             std::int64_t end) {
     const std::lock_guard lock(mutex_);
-    const FrameShape shape = reader_.header().shape;
+    const FrameShape shape = header().shape;
     const std::size_t pixel = row_major(row, col, shape.cols);
     ordered_json list = ordered_json::array();
     for (std::int64_t slot = first; slot < end; ++slot) {
@@ -132,7 +101,7 @@ ordered_json ViewedStream::samples_of_pixel(int row, int col, std::int64_t first
 std::vector<SamplePacket> ViewedStream::packets(std::int64_t first, std::int64_t end) {
     const std::lock_guard lock(mutex_);
     std::vector<SamplePacket> found;
-    visit_packets(first, end, [&](const SamplePacket& packet) { found.push_back(packet); });
+    source_->visit(first, end, [&](const SamplePacket& packet) { found.push_back(packet); });
     return found;
 }
 

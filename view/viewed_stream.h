@@ -1,37 +1,27 @@
 #pragma once
 
 #include <cstdint>
-#include <filesystem>
+#include <memory>
 #include <mutex>
 #include <nlohmann/json_fwd.hpp>
-#include <optional>
 #include <string>
 #include <vector>
 
-#include "session/stream_calibration.h"
-#include "stream/stream_reader.h"
 #include "study/report/stream_samples.h"
+#include "view/packet_source.h"
 
 namespace stipple {
 
 /// A sample stream of which any slot can be looked at. It may still grow. For several threads.
 class ViewedStream {
   public:
-    /// \throws InputError as StreamReader and calibrate; if the schedule has weights, or as
-    /// SlotSamples.
-    ViewedStream(const std::filesystem::path& file, const CalibrationChoice& calibration);
+    /// \throws InputError if the schedule has weights, or as SlotSamples.
+    ViewedStream(std::unique_ptr<PacketSource> source, std::string name);
 
-    [[nodiscard]] const StreamHeader& header() const { return reader_.header(); }
-    /// The stem of its file.
+    [[nodiscard]] const StreamHeader& header() const { return source_->header(); }
     [[nodiscard]] const std::string& name() const { return name_; }
-    /// A warning that it has no calibration, or empty.
-    [[nodiscard]] const Message& warning() const { return warning_; }
-    struct Extent {
-        std::int64_t slots = 0;  ///< so far
-        bool complete = false;   ///< no more slots come
-    };
     /// Reads on in a stream without an end.
-    [[nodiscard]] Extent extent();
+    [[nodiscard]] SlotExtent extent();
     [[nodiscard]] std::int64_t slots() { return extent().slots; }
     /// What the page needs to know of it (report_data.js: a run).
     [[nodiscard]] nlohmann::ordered_json json();
@@ -52,21 +42,14 @@ class ViewedStream {
     [[nodiscard]] std::vector<SamplePacket> packets(std::int64_t first, std::int64_t end);
 
   private:
-    /// Reads to the present end. Precondition: the lock is held.
-    void read_on();
     [[nodiscard]] Samples read_samples(std::int64_t slot);
-    /// Calls `take` with the packets of [first, end).
-    template <typename Take>
-    void visit_packets(std::int64_t first, std::int64_t end, const Take& take);
 
     std::mutex mutex_;
-    StreamReader reader_;
+    std::unique_ptr<PacketSource> source_;
     std::string name_;
-    Message warning_;
     SlotSamples samples_;
-    std::int64_t next_slot_ = -1;  ///< whose first packet the reader gives next; -1: not known
     std::int64_t held_slot_ = -1;  ///< whose samples samples_ has; -1: of none that is whole
-    Extent extent_;
+    SlotExtent extent_;
 };
 
 }  // namespace stipple

@@ -16,6 +16,10 @@ namespace stipple {
 
 void add_camera_arguments(Command& command, CameraArguments& arguments) {
     command.add_option("ADDRESS", arguments.address, address_forms()).required().input();
+    add_camera_options(command, arguments);
+}
+
+void add_camera_options(Command& command, CameraArguments& arguments) {
     command
         .add_option("--config", arguments.config,
                     "settings of the camera, a file of lines Feature = value")

@@ -20,6 +20,9 @@ struct CameraArguments {
 /// `ADDRESS`, `--config` and `--buffers`; `--set camera.FEATURE=VALUE` is the command's.
 void add_camera_arguments(Command& command, CameraArguments& arguments);
 
+/// `--config` and `--buffers` alone.
+void add_camera_options(Command& command, CameraArguments& arguments);
+
 /// The settings in the order of the file, then of the command line. \throws InputError.
 [[nodiscard]] CameraSettings camera_settings(const CameraArguments& arguments);
 

@@ -97,12 +97,7 @@ class AravisCamera : public Camera {
         apply_settings(device_, features);
         stream_ =
             std::make_unique<AravisStream>(device_, layout_of(device_), buffers, packet_bytes);
-        for (const auto* name : {"ExposureTime", "ExposureTimeAbs"})
-            if (!exposure_us_) exposure_us_ = device_.read_number(name);
-        for (const auto* name : {"Gain", "GainRaw"})
-            if (!gain_) gain_ = device_.read_number(name);
-        for (const auto* name : {"BlackLevel", "BlackLevelRaw"})
-            if (!black_level_dn_) black_level_dn_ = device_.read_number(name);
+        read_exposure();
         features_ = all_features(settings);
         xml_hash_ = fmt::format("{:016x}", hash_of(device_.genicam_xml()));
     }
@@ -121,8 +116,11 @@ class AravisCamera : public Camera {
     void start() override { stream_->start(); }
     [[nodiscard]] Arrival wait(std::chrono::milliseconds timeout) override;
     void stop() noexcept override { stream_->stop(); }
+    void set(const std::string& feature, const std::string& value) override;
 
   private:
+    void read_exposure();
+
     AravisDevice device_;
     std::unique_ptr<AravisStream> stream_;
     std::optional<double> exposure_us_;
@@ -167,6 +165,22 @@ CameraDescription AravisCamera::description() const {
                                                  arv_get_minor_version(), arv_get_micro_version());
     text.warnings = stream_->warnings();
     return text;
+}
+
+void AravisCamera::read_exposure() {
+    const auto first_of = [&](const char* name, const char* older) {
+        const auto value = device_.read_number(name);
+        return value ? value : device_.read_number(older);
+    };
+    exposure_us_ = first_of("ExposureTime", "ExposureTimeAbs");
+    gain_ = first_of("Gain", "GainRaw");
+    black_level_dn_ = first_of("BlackLevel", "BlackLevelRaw");
+}
+
+void AravisCamera::set(const std::string& feature, const std::string& value) {
+    device_.set(feature, value);
+    features_[feature] = device_.read(feature).value_or(value);
+    read_exposure();
 }
 
 Arrival AravisCamera::wait(std::chrono::milliseconds timeout) {

@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <chrono>
-#include <new>
 #include <string>
 #include <utility>
 #include <vector>
@@ -13,24 +12,13 @@
 #include "capture/frame_queue.h"
 #include "capture/frame_record.h"
 #include "capture/frame_sequence.h"
-#include "capture/recording/recording_writer.h"
-#include "core/version.h"
+#include "capture/recording/frame_recording.h"
 #include "io/pending_output.h"
 
 namespace stipple {
 namespace {
 
 constexpr std::chrono::milliseconds kPollInterval{100};
-
-SessionRecord session_record(const CameraDescription& camera, const CameraSettings& settings) {
-    SessionRecord record;
-    record.camera = camera;
-    record.settings = settings;
-    record.host = host_facts();
-    record.host["stipple"] = version();
-    record.started_realtime_ns = realtime_ns();
-    return record;
-}
 
 /// Frames of 10 s, for which a disk seldom stands still; memory for them is allocated in advance.
 std::size_t reserved_frames(const Camera& camera) {
@@ -42,16 +30,6 @@ std::size_t reserved_frames(const Camera& camera) {
         std::clamp<std::int64_t>(kDiskPause / period, kMinFrames, kMaxFrames));
 }
 
-std::string text_of(const std::exception_ptr& failure) {
-    try {
-        std::rethrow_exception(failure);
-    } catch (const std::bad_alloc&) {
-        return "not enough memory";
-    } catch (const std::exception& e) {
-        return e.what();
-    }
-}
-
 }  // namespace
 
 struct CameraRecorder::Impl {
@@ -61,11 +39,10 @@ struct CameraRecorder::Impl {
           output(file, options.force),
           session(std::move(open), options.session,
                   [this](const Camera& camera) { return plan_queue(camera); }),
-          writer(output.partial(), session_record(session.description(), settings),
-                 output.final_path().string()),
-          queue(writer, waiting, [this](std::vector<std::uint8_t>&& payload) {
-              session.give_back(std::move(payload));
-          }) {}
+          recording(output, session_record(session.description(), settings), waiting,
+                    [this](std::vector<std::uint8_t>&& payload) {
+                        session.give_back(std::move(payload));
+                    }) {}
 
     /// Before it starts. Returns the frames to reserve memory for: waiting, and being written.
     [[nodiscard]] std::size_t plan_queue(const Camera& camera) {
@@ -84,10 +61,8 @@ struct CameraRecorder::Impl {
     PendingOutput output;
     WaitingFrames waiting;
     CaptureSession session;  ///< behind what is planned when it opens the camera
-    RecordingWriter writer;
-    RecordingQueue queue;
-    std::uint64_t taken = 0;    ///< frames that the queue took
-    std::uint64_t refused = 0;  ///< frames that it had no room for
+    FrameRecording recording;
+    std::uint64_t taken = 0;  ///< frames that the recording took
     FrameRate rate;
     CameraRecording result;
 };
@@ -97,7 +72,7 @@ void CameraRecorder::Impl::run(const Observer& progress) {
     const auto elapsed_s = [&] { return static_cast<double>(monotonic_ns() - start_ns) * 1e-9; };
     try {
         while (progress(taken, session.totals()) && !options.limits.reached(taken, elapsed_s()) &&
-               !result.lost && !queue.failed())
+               !result.lost && !recording.failed())
             take(session.next(kPollInterval));
     } catch (...) {
         note_failure();
@@ -114,12 +89,11 @@ void CameraRecorder::Impl::take(SessionEvent event) {
 
 void CameraRecorder::Impl::take(CapturedFrame frame) {
     const FrameRecord record = frame.record;
-    if (queue.push(std::move(frame))) {
+    if (recording.push(std::move(frame))) {
         rate.add(record);
         ++taken;
         return;
     }
-    ++refused;
     session.count_queue_drop(record);
     // push() leaves the frame that it refuses. NOLINTNEXTLINE(bugprone-use-after-move)
     session.give_back(std::move(frame.payload));
@@ -131,38 +105,20 @@ void CameraRecorder::Impl::note_failure() {
 }
 
 std::string CameraRecorder::Impl::end_reason() const {
-    if (result.failure) return text_of(result.failure);
     if (!result.lost) return "stopped";
     const bool gone = !result.lost->at_end && !result.lost->bad_file;
     return gone ? fmt::format("camera lost: {}", result.lost->reason) : result.lost->reason;
 }
 
 void CameraRecorder::Impl::finish() {
-    try {
-        queue.drain();
-    } catch (...) {
-        note_failure();
-    }
-    result.transport = session.transport();
-    try {
-        RecordingEnd end;
-        end.reason = end_reason();
-        end.lost = session.totals().lost;
-        // Frames that the queue took and could not write after all.
-        end.lost[static_cast<std::size_t>(GapCause::kQueueDrop)] += queue.dropped() - refused;
-        end.transport = result.transport;
-        writer.finish(end);
-    } catch (...) {
-        note_failure();
-    }
-    result.end.frames = writer.frames();
-    try {
-        if (writer.frames() > 0) output.commit();
-        result.end = writer.totals();
-    } catch (const std::bad_alloc&) {  // perhaps after the file was put in place
-        note_failure();
-    }
-    result.kept = output.committed();
+    RecordingEnd end;
+    end.reason = end_reason();
+    end.lost = session.totals().lost;
+    end.transport = result.transport = session.transport();
+    RecordingResult made = recording.finish(std::move(end), result.failure);
+    result.end = std::move(made.end);
+    result.kept = made.kept;
+    result.failure = made.failure;
     result.session = session.totals();
     result.frames_hz = rate.hz();
 }

@@ -62,6 +62,10 @@ class V4l2Camera final : public Camera {
     void start() override;
     [[nodiscard]] Arrival wait(std::chrono::milliseconds timeout) override;
     void stop() noexcept override;
+    void set(const std::string& feature, const std::string& value) override {
+        set_v4l2_controls(device_, {{feature, value}});
+        exposure_ = read_v4l2_exposure(device_);
+    }
 
   private:
     [[nodiscard]] CapturedFrame frame_of(const V4l2Buffers::Filled& filled) const;

@@ -23,12 +23,13 @@ class Viewer:
     """A running `stipple view`."""
 
     def __init__(self, test, *arguments):
-        self.program = test.start_program("view", *arguments, "--json", "view.json", stdout=-1)
+        self.program = test.start_program("view", *arguments, "--json", "view.json", "--force", stdout=-1)
         test.addCleanup(self.program.stdout.close)
         test.addCleanup(self.program.stderr.close)
         test.addCleanup(self.program.wait)
         test.addCleanup(self.program.terminate)
         self.url = self.program.stdout.readline().strip()
+        test.assertTrue(self.url, "no address: see standard error")
         self.port = urlsplit(self.url).port
         self.path = urlsplit(self.url).path
 
@@ -132,7 +133,7 @@ class ViewTest(ProgramTest):
         self.assertLess(status["slots"], SLOTS)
         self.assertEqual(viewer.picture(0, status["slots"] - 1)[1].size, ROWS * COLS)
         (self.folder / "live.stipple").write_bytes(data)
-        self.assertEqual(viewer.json("status"), {"slots": SLOTS, "complete": True})
+        self.assertEqual(viewer.json("status"), {"slots": SLOTS, "first": 0, "complete": True})
         self.assertEqual(viewer.picture(0, SLOTS - 1)[1].size, ROWS * COLS)
 
     def test_footage_and_truth_are_shown_as_they_are(self):
@@ -172,7 +173,7 @@ class ViewTest(ProgramTest):
         self.succeed("synth", "pan", "-o", "wide.npy", "--frames", 2, "--size", f"{2 * COLS}x{ROWS}")
         self.fails(INPUT, ["absent.stipple"], "view", "absent.stipple")
         self.fails(INPUT, ["wide.npy", "96 x 32"], "view", "clip.stipple", "wide.npy")
-        self.fails(INPUT, ["gige:192.168.0.5", "capture live"], "view", "gige:192.168.0.5")
+        self.fails(DEVICE, ["gige:127.9.9.9", "no camera answers"], "view", "gige:127.9.9.9")
         self.fails(USAGE, ["--port"], "view", "clip.stipple", "--port", "0")
         with open("/dev/full", "w", encoding="utf-8") as full:
             done = subprocess.run([PROGRAM, "view", "clip.stipple"], cwd=self.folder, stdout=full, stderr=-1, timeout=60)

@@ -21,7 +21,7 @@ const kKeys = {
   ArrowRight: ['', '', () => chooseSlot(state.slot + 1)],
   PageUp: ['Page Up, Down', 'ten slots', () => chooseSlot(state.slot - 10)],
   PageDown: ['', '', () => chooseSlot(state.slot + 10)],
-  Home: ['Home, End', 'first, last slot', () => chooseSlot(0)],
+  Home: ['Home, End', 'first, last slot', () => chooseSlot(data.first ?? 0)],
   End: ['', '', () => chooseSlot(data.slots - 1)],
   ' ': ['Space', 'play', togglePlay],
   z: ['z, x, 0', 'zoom in, out, whole picture', () => chooseZoom(state.zoom.scale * 1.5)],

@@ -7,7 +7,7 @@ const state = {slot: 0, stops: 0, divider: 50, a: null, b: null, pixel: null, co
                display: 'tone', low: 0, high: 1, pictures: 0};
 
 function chooseSlot(slot) {
-  choose({slot: clamp(slot, 0, data.slots - 1)});
+  choose({slot: clamp(slot, data.first ?? 0, data.slots - 1)});
 }
 
 function chooseStops(stops) {

@@ -7,6 +7,7 @@ const kBrightMean = 1;
 const kShownMean = 0.25;
 const views = allViews();
 const drawing = {a: 0, b: 0}; // numbers of the latest drawings: a slower, older one is dropped
+const latest = {}; // side -> promise of the latest drawing
 
 function viewOf(side) {
   return views.find((view) => view.id === state[side]);
@@ -149,7 +150,7 @@ function setUpViewer() {
   setUpCopies();
   listenToZoom();
   for (const side of ['a', 'b'])
-    whenever(['slot', 'stops', 'display', 'low', 'high', side], () => drawSide(side));
+    whenever(['slot', 'stops', 'display', 'low', 'high', side], () => { latest[side] = drawSide(side); });
   whenever(['a', 'b'], showChoice);
   whenever(['a', 'b', 'layout'], showOneOrTwo);
   whenever(['a', 'b', 'stops'], showScale);

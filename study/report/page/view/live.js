@@ -1,8 +1,10 @@
 'use strict';
 
-// What a stream that grows brings while it is looked at.
+// What a stream that grows, or a running camera, brings while it is looked at.
 
 const kStatusMs = 500;
+const kDecodedBehind = 16; // slots: what comes after a slot tells of it too
+let followed = null; // the slot of a camera that was shown as the newest one
 
 function takeSlots(slots) {
   if (slots === data.slots) return;
@@ -15,7 +17,33 @@ function takeSlots(slots) {
   showSlot();
 }
 
+/** The newest slots of a camera, as fast as they can be shown. */
+async function followCamera() {
+  for (let slots = -1; ;) {
+    const status = await answered('status', {than: slots, wait: 1000});
+    if (!status) return;
+    ({slots} = status);
+    Object.assign(data, {slots, first: status.first});
+    Object.assign(element('slot'), {min: status.first, max: slots - 1, disabled: slots === 1});
+    element('play').disabled = slots === 1;
+    if (followed !== null && state.slot !== followed) element('follow').checked = false;
+    followed = null;
+    if (element('follow').checked) {
+      chooseSlot(slots - 1 - (shownVideos().length ? kDecodedBehind : 0));
+      followed = state.slot;
+      await Promise.all(Object.values(latest));
+    }
+    showSlot();
+    if (status.complete) return;
+    await new Promise((resolve) => { setTimeout(resolve, 20); });
+  }
+}
+
 async function askStatus() {
+  if (data.running_camera) {
+    element('follow-label').hidden = false;
+    return followCamera();
+  }
   const status = await answered('status', {});
   if (!status) return;
   takeSlots(status.slots);

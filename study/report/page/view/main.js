@@ -9,6 +9,7 @@ setUpViewer();
 setUpPixel();
 setUpSchedule();
 setUpTimeline();
+setUpCamera();
 document.body.classList.add('view');
 whenever(['slot'], markSlots);
 whenever(['slot', 'a', 'b'], () => shownVideos().forEach(improve));

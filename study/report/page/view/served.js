@@ -116,7 +116,10 @@ async function exposureImage(runIndex, slot) {
 }
 
 function furtherViews() {
-  return data.runs.map((run, i) => (
+  const exposures = data.runs.map((run, i) => (
     {id: `exposure-${i}`, name: `exposures, ${run.name}`, kind: 'exposure',
      image: (slot) => exposureImage(i, slot)}));
+  const focus = {id: 'focus', name: 'camera, focus and clipping', kind: 'light', image: focusImage,
+                 codes: (slot) => picture(0, slot)};
+  return data.running_camera ? [focus, ...exposures] : exposures;
 }

@@ -89,6 +89,8 @@ async function showLanes() {
 
 function setUpTimeline() {
   if (data.runs.length === 0) return;
+  whenever(['slot', 'run'], showLanes);
+  if (data.running_camera) return;
   element('timeline').hidden = false;
   element('timeline-label').hidden = data.runs.length < 2;
   fillSelect(element('timeline-run'), data.runs.map((run, value) => ({value, text: run.name})), 0);
@@ -98,6 +100,5 @@ function setUpTimeline() {
     chooseSlot(Math.floor(((event.clientX - box.left) / box.width) * data.slots));
   });
   whenever(['slot'], drawTimeline);
-  whenever(['slot', 'run'], showLanes);
   askTimeline();
 }

@@ -1,0 +1,163 @@
+"""`stipple view` of a running camera, which `capture serve` is: its frames, the samples that the chip would make of
+them, recordings and features, and a camera that goes away."""
+
+import os
+import subprocess
+import threading
+import time
+import unittest
+
+import numpy as np
+from capture_record_test import records_of
+from program import INPUT, USAGE, ProgramTest
+from view_test import Viewer, light_of
+
+ROWS, COLS, FRAMES_HZ = 48, 64, 100
+FULL_SCALE = 65535
+
+
+class ViewCameraTest(ProgramTest):
+    count = 0
+
+    def setUp(self):
+        super().setUp()
+        if "built without" in self.run_program("capture", "list").stdout:
+            self.skipTest("built without Aravis")
+        ViewCameraTest.count += 1
+        number = os.getpid()
+        self.ip = f"127.{150 + self.count}.{number >> 8 & 255}.{number & 255 or 1}"
+        self.address = f"gige:{self.ip}"
+        self.light = np.random.default_rng(1).uniform(0.1, 0.9, (20, ROWS, COLS))
+        self.write_array("light.npy", self.light)
+
+    def serve(self, source="light.npy"):
+        camera = self.start_program("capture", "serve", source, "--repeat", "--format", "Mono16", "--address", self.ip,
+                                    "--frames-hz", FRAMES_HZ, stdout=subprocess.PIPE)
+        watchdog = threading.Timer(60, camera.kill)
+        watchdog.start()
+        self.addCleanup(camera.communicate)
+        self.addCleanup(camera.kill)
+        self.assertIn("READY", camera.stdout.readline())
+        watchdog.cancel()
+        return camera
+
+    def view(self, *options):
+        return Viewer(self, self.address, *options)
+
+    def until(self, condition):
+        deadline = time.monotonic() + 60
+        while not (value := condition()):
+            self.assertLess(time.monotonic(), deadline)
+            time.sleep(0.05)
+        return value
+
+    def act(self, viewer, what, expected=200, **keys):
+        status, _, answer = viewer.ask(f"camera/{what}", method="POST", **keys)
+        self.assertEqual(status, expected, answer)
+        return answer.decode()
+
+    def test_the_picture_of_a_slot_is_a_frame_of_the_camera(self):
+        self.serve()
+        viewer = self.view()
+        status = self.until(lambda: (now := viewer.json("status", than=30, wait=20000))["slots"] > 30 and now)
+        _, codes = viewer.picture(0, status["slots"] - 1)
+        distance = [np.abs(light_of(codes) / frame.ravel() - 1).max() for frame in self.light]
+        self.assertLess(min(distance), 0.003)  # of a code
+        self.assertEqual(viewer.ask(f"plane/v0-{status['slots'] + 1000}")[0], 404)
+
+    def test_samples_are_those_of_emulate(self):
+        """Of a scene that does not move: there each frame of the camera is that of the footage."""
+        light = (np.round(self.light[0] * FULL_SCALE) / FULL_SCALE).astype(np.float32)
+        self.write_array("still.npy", np.broadcast_to(light, (120, ROWS, COLS)))
+        self.succeed("emulate", "still.npy", "-o", "clip.stipple", "--schedule", "tiled")
+        clip = Viewer(self, "clip.stipple")
+        self.serve("still.npy")
+        viewer = self.view("--schedule", "tiled")
+        self.until(lambda: viewer.json("status")["slots"] > 60)
+        for slot in (20, 45):
+            of_clip, of_camera = ([np.frombuffer(of.ask(f"plane/r0{part}-{slot}")[2], "<u2") for part in "kd"]
+                                  for of in (clip, viewer))
+            np.testing.assert_array_equal(of_camera[0], of_clip[0])
+            self.assertLess(np.mean(of_camera[1] != of_clip[1]), 0.001)  # the light may differ by its last bit
+
+    def test_the_decoded_picture_is_near_the_light(self):
+        self.write_array("still.npy", np.broadcast_to(self.light[:1], self.light.shape))
+        self.serve("still.npy")
+        viewer = self.view()
+        slots = self.until(lambda: (now := viewer.json("status")["slots"]) > 60 and now)
+        fields, codes = viewer.picture(1, slots - 20)
+        self.assertIn(fields["Stipple-Method"], ("naive", "live"))
+        self.assertLess(np.sqrt(np.mean((light_of(codes) - self.light[0].ravel()) ** 2)), 0.06)
+
+    def test_a_recording_has_every_frame_from_its_begin_to_its_end(self):
+        self.serve()
+        (self.folder / "clips").mkdir()
+        viewer = self.view("--recordings", "clips")
+        self.until(lambda: viewer.json("camera")["frames"] > 20)
+        self.act(viewer, "record")
+        self.assertIn("is being recorded", self.act(viewer, "record", 400))
+        self.until(lambda: viewer.json("camera")["recording"]["frames"] > 50)
+        self.act(viewer, "stop")
+        self.assertIn("is not being recorded", self.act(viewer, "stop", 400))
+        self.until(lambda: any(".strec" in event["text"] for event in viewer.json("camera")["events"]))
+        [file] = (self.folder / "clips").glob("*.strec")
+        records = records_of(file)
+        self.assertGreater(len(records), 50)
+        self.assertEqual(records[0]["id"], 0)
+        self.assertEqual(records[0]["lost_before"], 0)
+        for before, record in zip(records, records[1:]):
+            self.assertEqual(record["id"], before["id"] + 1 + record["lost_before"])
+        known = self.figures("info", file)
+        self.assertEqual(known["frames"], len(records))
+
+    def test_a_recording_under_way_is_kept_at_the_end(self):
+        self.serve()
+        viewer = self.view()
+        self.act(viewer, "record")
+        self.until(lambda: viewer.json("camera")["recording"]["frames"] > 5)
+        viewer.program.terminate()
+        self.assertEqual(viewer.program.wait(timeout=30), 143)
+        [file] = self.folder.glob("*.strec")
+        self.assertGreater(len(records_of(file)), 5)
+
+    def test_features_are_set_within_their_ranges(self):
+        self.serve()
+        viewer = self.view()
+        features = {feature["name"]: feature for feature in viewer.json("camera/features")}
+        heartbeat = features["GevHeartbeatTimeout"]
+        self.assertEqual(heartbeat["access"], "rw")
+        value = int(heartbeat["minimum"]) + 100
+        self.act(viewer, "set", feature="GevHeartbeatTimeout", value=value)
+        again = {feature["name"]: feature for feature in viewer.json("camera/features")}
+        self.assertEqual(int(again["GevHeartbeatTimeout"]["value"]), value)
+        self.act(viewer, "set", 400, feature="GevHeartbeatTimeout", value=int(heartbeat["maximum"]) + 1)
+        self.assertIn("NoSuchFeature", self.act(viewer, "set", 400, feature="NoSuchFeature", value=1))
+        frames = viewer.json("camera")["frames"]
+        self.until(lambda: viewer.json("camera")["frames"] > frames)
+
+    def test_only_the_page_acts(self):
+        self.serve()
+        viewer = self.view()
+        self.assertEqual(viewer.ask("camera/record")[0], 404)  # GET: a picture in a page of others could ask it
+        self.assertEqual(viewer.ask("camera/record", {"Origin": "http://" + "elsewhere.example"}, "POST")[0], 403)
+        self.assertEqual(viewer.ask_for("/camera/record", method="POST")[0], 403)
+        self.assertIsNone(viewer.json("camera")["recording"])
+        self.assertEqual(list(self.folder.glob("*.strec")), [])
+
+    def test_a_camera_that_goes_away_is_told(self):
+        camera = self.serve()
+        viewer = self.view("--set", "camera.GevHeartbeatTimeout=1000")
+        self.until(lambda: viewer.json("camera")["frames"] > 5)
+        camera.kill()
+        self.until(lambda: any("lost" in event["text"] for event in viewer.json("camera")["events"]))
+        self.assertGreater(viewer.picture(0, viewer.json("status")["slots"] - 1)[1].size, 0)
+
+    def test_what_cannot_be_viewed_is_told(self):
+        self.serve()
+        self.fails(INPUT, ["NoSuchFeature"], "view", self.address, "--set", "camera.NoSuchFeature=1")
+        self.fails(INPUT, [self.address, "a page of its own"], "view", "light.npy", self.address)
+        self.fails(USAGE, ["--sensor", "no running camera"], "view", "light.npy", "--sensor", "paper")
+
+
+if __name__ == "__main__":
+    unittest.main()

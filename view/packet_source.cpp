@@ -1,0 +1,34 @@
+#include "view/packet_source.h"
+
+#include <algorithm>
+#include <utility>
+
+namespace stipple {
+
+FilePackets::FilePackets(StreamReader reader) : reader_(std::move(reader)) {
+    if (const auto known = reader_.slots()) extent_ = {*known, true};
+}
+
+SlotExtent FilePackets::extent() {
+    if (extent_.complete) return extent_;
+    next_slot_ = -1;
+    reader_.seek(std::max<std::int64_t>(extent_.slots - 1, 0));
+    for (SamplePacket packet; reader_.next(packet);)
+        extent_.slots = std::max(extent_.slots, packet.slot + 1);
+    extent_.complete = reader_.report().complete;
+    return extent_;
+}
+
+void FilePackets::visit(std::int64_t first, std::int64_t end,
+                        const std::function<void(const SamplePacket&)>& take) {
+    if (first != next_slot_) reader_.seek(first);
+    next_slot_ = -1;
+    for (SamplePacket packet; next_slot_ != end && reader_.next(packet) && packet.slot < end;) {
+        if (packet.slot >= first) take(packet);
+        const bool last = packet.first_row + packet.rows == reader_.header().shape.rows;
+        next_slot_ = last ? packet.slot + 1 : -1;
+    }
+    if (next_slot_ != end) next_slot_ = -1;
+}
+
+}  // namespace stipple

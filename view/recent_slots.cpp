@@ -1,0 +1,121 @@
+#include "view/recent_slots.h"
+
+#include <algorithm>
+#include <utility>
+
+#include "core/colour_filter.h"
+#include "core/index.h"
+#include "decoder/measurements.h"
+#include "study/report/report_page.h"
+
+namespace stipple {
+namespace {
+
+constexpr std::size_t kLeastSlots = 48;
+
+std::size_t slots_in(std::size_t max_bytes, const FrameLayout& layout, const StreamHeader& header) {
+    const double samples =
+        static_cast<double>(header.shape.sites()) * header.schedule.samples_per_pixel_slot();
+    const double bytes = static_cast<double>(layout.payload_bytes()) + 2 * samples;
+    return std::max(kLeastSlots, static_cast<std::size_t>(static_cast<double>(max_bytes) / bytes));
+}
+
+/// The light of a mosaic as three planes: that of each colour in the cell of 2 x 2 pixels. Pixels
+/// beyond the last whole cell belong to it.
+std::vector<float> coloured(std::span<const float> mosaic, FrameShape shape, ColourFilter filter) {
+    std::vector<float> light(3 * shape.pixels());
+    for (int row = 0; row < shape.rows; ++row)
+        for (int col = 0; col < shape.cols; ++col) {
+            const int cell_row = std::max(std::min(row / 2 * 2, shape.rows - 2), 0);
+            const int cell_col = std::max(std::min(col / 2 * 2, shape.cols - 2), 0);
+            float sum[3] = {}, count[3] = {};
+            for (int r = cell_row; r < std::min(cell_row + 2, shape.rows); ++r)
+                for (int c = cell_col; c < std::min(cell_col + 2, shape.cols); ++c) {
+                    const auto plane = index(colour_plane(filter, r, c));
+                    sum[plane] += mosaic[row_major(r, c, shape.cols)];
+                    ++count[plane];
+                }
+            for (std::size_t plane = 0; plane < 3; ++plane)
+                if (count[plane] > 0)
+                    light[plane * shape.pixels() + row_major(row, col, shape.cols)] =
+                        sum[plane] / count[plane];
+        }
+    return light;
+}
+
+}  // namespace
+
+RecentSlots::RecentSlots(const FrameLayout& layout, double black_level_dn, StreamHeader header,
+                         std::size_t max_bytes)
+    : header_(std::move(header)),
+      to_light_(layout, black_level_dn),
+      most_(slots_in(max_bytes, layout, header_)) {}
+
+void RecentSlots::add(std::span<const std::uint8_t> payload, std::span<const SamplePacket> packets,
+                      std::int64_t arrival_ns) {
+    Slot slot;
+    const std::lock_guard lock(mutex_);
+    if (slots_.size() == most_) {  // its memory is used again
+        slot = std::move(slots_.front());
+        slots_.pop_front();
+    }
+    slot.payload.assign(payload.begin(), payload.end());
+    slot.packets.assign(packets.begin(), packets.end());
+    slot.arrival_ns = arrival_ns;
+    report_.packets += packets.size();
+    for (const SamplePacket& packet : packets) report_.samples += packet.dn.size();
+    slots_.push_back(std::move(slot));
+    report_.slots = ++extent_.slots;
+    extent_.first = extent_.slots - static_cast<std::int64_t>(slots_.size());
+}
+
+void RecentSlots::end() {
+    const std::lock_guard lock(mutex_);
+    extent_.complete = true;
+}
+
+SlotExtent RecentSlots::extent() const {
+    const std::lock_guard lock(mutex_);
+    return extent_;
+}
+
+StreamReport RecentSlots::report() const {
+    const std::lock_guard lock(mutex_);
+    return report_;
+}
+
+const RecentSlots::Slot* RecentSlots::find(std::int64_t slot) const {
+    if (slot < extent_.first || slot >= extent_.slots) return nullptr;
+    return &slots_[static_cast<std::size_t>(slot - extent_.first)];
+}
+
+void RecentSlots::visit(std::int64_t first, std::int64_t end,
+                        const std::function<void(const SamplePacket&)>& take) const {
+    const std::lock_guard lock(mutex_);
+    for (std::int64_t at = std::max(first, extent_.first); at < std::min(end, extent_.slots); ++at)
+        for (const SamplePacket& packet : find(at)->packets) take(packet);
+}
+
+std::vector<std::uint16_t> RecentSlots::codes(std::int64_t slot) {
+    std::vector<std::uint8_t> payload;
+    {
+        const std::lock_guard lock(mutex_);
+        const Slot* const found = find(slot);
+        if (found == nullptr) return {};
+        payload = found->payload;
+    }
+    const std::lock_guard lock(light_mutex_);
+    std::vector<float> light(to_light_.shape().sites());
+    to_light_.convert(payload, light);
+    if (decoded_shape(header_).planes > to_light_.shape().planes)
+        light = coloured(light, to_light_.shape(), to_light_.filter());
+    return light_codes(light);
+}
+
+std::int64_t RecentSlots::arrival_ns(std::int64_t slot) const {
+    const std::lock_guard lock(mutex_);
+    const Slot* const found = find(slot);
+    return found == nullptr ? 0 : found->arrival_ns;
+}
+
+}  // namespace stipple

@@ -1,0 +1,270 @@
+#include "view/viewed_camera.h"
+
+#include <fmt/format.h>
+
+#include <nlohmann/json.hpp>
+#include <utility>
+
+#include "capture/camera_search.h"
+#include "capture/capture_figures.h"
+#include "capture/recording/frame_recording.h"
+#include "core/error.h"
+#include "core/message.h"
+#include "readout/emulator.h"
+#include "study/report/json_figures.h"
+
+namespace stipple {
+namespace {
+
+using nlohmann::ordered_json;
+
+constexpr std::chrono::milliseconds kPollInterval{20};
+constexpr std::size_t kWaitingFrames = 16;  ///< for the emulation
+constexpr std::size_t kRecentBytes = std::size_t{128} << 20U;
+constexpr std::size_t kRecordingBytes = std::size_t{1} << 28U;
+constexpr std::size_t kMaxEvents = 100;
+
+std::uint64_t all_lost(const SessionTotals& totals) {
+    std::uint64_t sum = 0;
+    for (const std::uint64_t lost : totals.lost) sum += lost;
+    return sum;
+}
+
+}  // namespace
+
+/// A recording, and what the session had counted when it began.
+struct ViewedCamera::Recording {
+    Recording(const std::filesystem::path& file, const SessionRecord& session)
+        : output(file, false), frames(output, session, {.bytes = kRecordingBytes}) {}
+
+    PendingOutput output;
+    FrameRecording frames;
+    SessionTotals before;
+    std::optional<std::uint64_t> first_id;  ///< of the session
+};
+
+ViewedCamera::ViewedCamera(ViewedCameraOptions options)
+    : options_(std::move(options)),
+      settings_(options_.settings),
+      session_(
+          [this] {
+              const std::lock_guard lock(settings_mutex_);
+              return options_.open(settings_);
+          },
+          options_.session, [](const Camera&) { return kWaitingFrames + 1; }),
+      description_(session_.description()),
+      layout_(session_.layout()),
+      setup_([this] {
+          const FrameLight light(layout_, options_.black_level_dn);
+          return set_up_sensor(options_.sensor, light.shape(), light.filter());
+      }()),
+      recent_(std::make_unique<RecentSlots>(layout_, options_.black_level_dn,
+                                            stream_header_of(setup_, {}), kRecentBytes)),
+      frames_(kWaitingFrames, kRecordingBytes),
+      start_ns_(monotonic_ns()) {
+    for (const Message& warning : description_.warnings) options_.warn(warning);
+    receiver_ = std::jthread([this](const std::stop_token& stop) { receive(stop); });
+    emulator_ = std::jthread([this] { emulate(); });
+}
+
+ViewedCamera::~ViewedCamera() {
+    receiver_.request_stop();
+    receiver_.join();
+    emulator_.join();
+}
+
+std::string ViewedCamera::name() const {
+    return fmt::format("{} {}", description_.vendor, description_.model);
+}
+
+void ViewedCamera::receive(const std::stop_token& stop) {
+    try {
+        while (!stop.stop_requested() && ended_.empty()) {
+            take(session_.next(kPollInterval));
+            run_tasks();
+        }
+    } catch (const std::exception& e) {
+        const std::lock_guard lock(mutex_);
+        ended_ = e.what();
+    }
+    {
+        const std::lock_guard lock(mutex_);
+        accepts_tasks_ = false;
+    }
+    run_tasks();
+    if (recording_) end_recording();
+    for (auto& finished : finishing_) finished.wait();
+    frames_.close();
+}
+
+void ViewedCamera::run_tasks() {
+    for (;;) {
+        std::packaged_task<void()> task;
+        {
+            const std::lock_guard lock(mutex_);
+            if (tasks_.empty()) return;
+            task = std::move(tasks_.front());
+            tasks_.pop_front();
+        }
+        task();
+    }
+}
+
+void ViewedCamera::in_session(std::function<void()> task) {
+    std::future<void> done;
+    {
+        const std::lock_guard lock(mutex_);
+        if (!accepts_tasks_) throw DeviceError(options_.address, "sends no more frames: " + ended_);
+        done = tasks_.emplace_back(std::move(task)).get_future();
+    }
+    done.get();
+}
+
+void ViewedCamera::add_event(const std::string& text) {
+    const std::lock_guard lock(mutex_);
+    events_.emplace_back(static_cast<double>(monotonic_ns() - start_ns_) * 1e-9, text);
+    if (events_.size() > kMaxEvents) events_.pop_front();
+}
+
+void ViewedCamera::take(SessionEvent event) {
+    if (auto* const frame = std::get_if<CapturedFrame>(&event)) return take(std::move(*frame));
+    if (std::holds_alternative<NoFrame>(event)) return;
+    options_.tell(event);
+    if (const auto* const outage = std::get_if<Outage>(&event))
+        add_event("the camera is lost: " + outage->reason);
+    if (const auto* const back = std::get_if<Recovery>(&event))
+        add_event(fmt::format("the camera is back after {:.1f} s", back->gone_s));
+    if (const auto* const lost = std::get_if<DeviceLost>(&event)) {
+        add_event(lost->reason);
+        const std::lock_guard lock(mutex_);
+        ended_ = lost->reason;
+    }
+}
+
+void ViewedCamera::take(CapturedFrame frame) {
+    const FrameRecord& record = frame.record;
+    if (record.lost_before > 0)
+        add_event(fmt::format("{} lost before frame {}: {}", record.lost_before, record.id,
+                              name_in(kGapCauses, record.cause)));
+    {
+        const std::lock_guard lock(mutex_);
+        rate_.add(record);
+    }
+    if (recording_) {
+        CapturedFrame copy = frame;
+        if (!recording_->first_id) {  // what was lost before is not of this recording
+            recording_->first_id = record.id;
+            copy.record.lost_before = 0;
+            copy.record.cause = GapCause::kNone;
+        }
+        copy.record.id -= *recording_->first_id;
+        if (!recording_->frames.push(std::move(copy))) session_.count_queue_drop(record);
+    }
+    const bool shown = record.status == FrameStatus::kComplete && record.layout == layout_ &&
+                       frames_.push(std::move(frame));
+    // push() leaves the frame that it refuses. NOLINTNEXTLINE(bugprone-use-after-move)
+    if (!shown) session_.give_back(std::move(frame.payload));
+    const std::lock_guard lock(mutex_);
+    if (!shown) ++skipped_;
+    totals_ = session_.totals();
+    if (!recording_) return;
+    recorded_ = totals_.frames - recording_->before.frames;
+    lost_ = all_lost(totals_) - all_lost(recording_->before);
+}
+
+void ViewedCamera::emulate() {
+    Emulator emulator(setup_);
+    FrameLight to_light(layout_, options_.black_level_dn);
+    std::vector<float> light(to_light.shape().sites());
+    while (auto frame = frames_.pop()) {
+        to_light.convert(frame->payload, light);
+        recent_->add(frame->payload, emulator.expose(light), frame->record.host_monotonic_ns);
+        session_.give_back(std::move(frame->payload));
+    }
+    recent_->end();
+}
+
+void ViewedCamera::record() {
+    in_session([this] {
+        if (recording_) throw InputError(file_, "is being recorded; stop it first");
+        auto recording =
+            std::make_unique<Recording>(options_.folder / recording_name_now(),
+                                        session_record(session_.description(), settings_));
+        recording->before = session_.totals();
+        recording_ = std::move(recording);
+        const std::lock_guard lock(mutex_);
+        file_ = recording_->output.final_path().string();
+        recorded_ = lost_ = 0;
+    });
+}
+
+void ViewedCamera::stop_recording() {
+    in_session([this] {
+        if (!recording_) throw InputError(options_.address, "is not being recorded");
+        end_recording();
+    });
+}
+
+/// A thread of its own waits for the disk.
+void ViewedCamera::end_recording() {
+    RecordingEnd end;
+    const SessionTotals& now = session_.totals();
+    for (std::size_t cause = 0; cause < end.lost.size(); ++cause)
+        end.lost[cause] = now.lost[cause] - recording_->before.lost[cause];
+    end.transport = session_.transport();
+    {
+        const std::lock_guard lock(mutex_);
+        file_.clear();
+    }
+    finishing_.push_back(std::async(
+        std::launch::async,
+        [this, end, recording = std::shared_ptr<Recording>(std::move(recording_))] {
+            const std::string file = recording->output.final_path().string();
+            try {
+                const RecordingResult made = recording->frames.finish(end);
+                std::uint64_t lost = 0;
+                for (const std::uint64_t of_cause : made.end.lost) lost += of_cause;
+                add_event(fmt::format("{}: {} frames, {} lost", file, made.end.frames, lost));
+                if (made.failure) std::rethrow_exception(made.failure);
+            } catch (const std::exception& e) {
+                add_event(fmt::format("{}: {}", file, e.what()));
+            }
+        }));
+}
+
+void ViewedCamera::set(const std::string& feature, const std::string& value) {
+    in_session([&] {
+        session_.set(feature, value);
+        const std::lock_guard lock(settings_mutex_);
+        std::erase_if(settings_, [&](const auto& setting) { return setting.first == feature; });
+        settings_.emplace_back(feature, value);
+    });
+    add_event(fmt::format("{} = {}", feature, value));
+}
+
+ordered_json ViewedCamera::status() const {
+    const std::lock_guard lock(mutex_);
+    ordered_json events = ordered_json::array();
+    for (const auto& [seconds, text] : events_)
+        events.push_back({{"seconds", seconds}, {"text", text}});
+    ordered_json recording = nullptr;
+    if (!file_.empty()) recording = {{"file", file_}, {"frames", recorded_}, {"lost", lost_}};
+    return {{"frames", totals_.frames},
+            {"frames_hz", or_null(rate_.hz())},
+            {"lost", json_of([&](const auto& add) { visit_lost_figures(totals_, add); })},
+            {"incomplete", totals_.incomplete},
+            {"outages", totals_.outages},
+            {"skipped", skipped_},
+            {"recording", recording},
+            {"events", events},
+            {"ended", ended_.empty() ? ordered_json(nullptr) : ordered_json(ended_)}};
+}
+
+ordered_json ViewedCamera::features() const {
+    ordered_json list = ordered_json::array();
+    for (const CameraFeature& feature : camera_features(options_.address, ""))
+        list.push_back(json_of([&](const auto& add) { visit_feature_figures(feature, add); }));
+    return list;
+}
+
+}  // namespace stipple
