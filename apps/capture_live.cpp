@@ -8,10 +8,12 @@
 
 #include "apps/arguments/camera.h"
 #include "apps/arguments/common_options.h"
+#include "apps/arguments/page_server.h"
 #include "apps/arguments/preview.h"
 #include "apps/arguments/sensor.h"
 #include "apps/interrupt.h"
 #include "apps/output/json_file.h"
+#include "apps/output/own_command.h"
 #include "apps/output/preview_image.h"
 #include "apps/output/progress.h"
 #include "apps/output/session_report.h"
@@ -27,6 +29,8 @@
 #include "io/output_names.h"
 #include "readout/emulator.h"
 #include "readout/sensor_file.h"
+#include "view/live_view.h"
+#include "view/view_page.h"
 
 namespace stipple {
 namespace {
@@ -41,6 +45,8 @@ struct LiveArguments {
     PreviewArguments preview;
     std::size_t queue_frames = 64;
     double late_after_slots = 2;
+    bool view = false;
+    PageServerOptions server;
     bool fails_on_loss = false;
 };
 
@@ -51,8 +57,24 @@ LiveCameraOptions camera_options(const LiveArguments& arguments) {
             .tell = say_event};
 }
 
+/// A page on the stream while it is written. Null without --view.
+struct LivePage {
+    LivePage(const LiveCamera& camera, const LiveArguments& arguments, const SensorSetup& setup)
+        : live(camera, arguments.black_level_dn, stream_header_of(setup, {}), arguments.output),
+          page({.sources = {}, .camera = &live, .command = own_command()}),
+          server(arguments.server,
+                 [this](const PageRequest& request) { return page.answer(request); }) {
+        say_note("the page of the camera: {}", server.url());
+    }
+    ~LivePage() { page.end(); }
+
+    LiveView live;
+    ViewPage page;
+    PageServer server;
+};
+
 LiveEmulation emulate(LiveCamera& camera, FrameLight to_light, StreamRecorder& recorder,
-                      LiveEmulatorOptions options, const RunOptions& run) {
+                      LiveEmulatorOptions options, LivePage* page, const RunOptions& run) {
     constexpr double kRateAfterS = 1;
     const SensorParams& sensor = recorder.emulator().setup().params;
     const auto frames = options.limits.total();
@@ -67,6 +89,7 @@ LiveEmulation emulate(LiveCamera& camera, FrameLight to_light, StreamRecorder& r
             say_warning(
                 "the emulation is slower than the camera: frames that find the queue full are "
                 "dropped, and their slots have no samples");
+        if (page != nullptr) page->live.note(now);
         progress.reach(static_cast<double>(now.latencies.count()));
         if (now.held_slots + now.late_slots > 0)
             progress.note(fmt::format("{} held, {} dropped, {} late",
@@ -107,17 +130,18 @@ std::unique_ptr<LivePreview> open_preview(const PreviewArguments& arguments,
         show_in(arguments.file));
 }
 
-LiveEmulatorOptions emulator_options(const LiveArguments& arguments, LivePreview* preview) {
+LiveEmulatorOptions emulator_options(const LiveArguments& arguments, LivePreview* preview,
+                                     LivePage* page) {
     LiveEmulatorOptions options{
         .limits = arguments.limits,
         .late_after_slots = arguments.late_after_slots,
         .tell = [&address = arguments.camera.address](const LeftOut& left_out) {
             say_warning(left_out_text(address, left_out));
         }};
-    if (preview != nullptr)
-        options.show = [preview](auto packets, auto arrival_ns) {
-            preview->add(packets, arrival_ns);
-        };
+    options.show = [preview, page](const LiveSlot& slot) {
+        if (preview != nullptr) preview->add(slot.packets, slot.arrival_ns);
+        if (page != nullptr) page->live.recent().add(slot.payload, slot.packets, slot.arrival_ns);
+    };
     return options;
 }
 
@@ -147,8 +171,11 @@ void live(const LiveArguments& arguments, const RunOptions& run) {
     say_warnings(camera.description());
     say_warning(mosaic_warning(setup, to_light.filter()));
     const auto preview = open_preview(arguments.preview, setup);
+    const auto page =
+        arguments.view ? std::make_unique<LivePage>(camera, arguments, setup) : nullptr;
     LiveEmulation emulation =
-        emulate(camera, to_light, recorder, emulator_options(arguments, preview.get()), run);
+        emulate(camera, to_light, recorder, emulator_options(arguments, preview.get(), page.get()),
+                page.get(), run);
     emulation.totals.repeated = camera.stop().repeated;
     if (emulation.latencies.count() == 0) {
         throw_if_stopped();
@@ -178,6 +205,9 @@ void add_capture_live(Command& capture, Action& action) {
     add_settings(command, std::move(sections),
                  "change a key of the sensor or of the schedule, or set a feature of the camera");
     add_preview_arguments(command, options->preview);
+    command.add_flag("--view", options->view,
+                     "show frames, samples and decoded video in a browser (docs/view.md)");
+    add_page_server_options(command, options->server);
     add_session_arguments(command, options->session);
     add_loss_argument(command, options->fails_on_loss);
     command.add_option("--black-level", options->black_level_dn, "DN without light")
@@ -206,6 +236,8 @@ void add_capture_live(Command& capture, Action& action) {
         if (options->preview.file.empty())
             command.refuse({"--preview-method", "--preview-size"},
                            "there is no preview; add --preview FILE or leave it out");
+        if (!options->view)
+            command.refuse({"--port", "--address"}, "there is no page; add --view or leave it out");
         check_session_arguments(command, options->camera);
     });
 }

@@ -16,6 +16,7 @@
 #include "apps/arguments/camera.h"
 #include "apps/arguments/common_options.h"
 #include "apps/arguments/footage.h"
+#include "apps/arguments/page_server.h"
 #include "apps/arguments/sensor.h"
 #include "apps/interrupt.h"
 #include "apps/output/json_file.h"
@@ -28,9 +29,9 @@
 #include "core/error.h"
 #include "decoder/decode_method.h"
 #include "session/rig_folder.h"
+#include "view/camera_page.h"
 #include "view/page_server.h"
 #include "view/view_page.h"
-#include "view/viewed_camera.h"
 
 namespace stipple {
 namespace {
@@ -63,11 +64,9 @@ void check_source(const std::string& source) {
         throw InputError(source, "is a rig; a page shows its streams, or its decoded video");
 }
 
-/// Null if the sources are files.
-std::unique_ptr<ViewedCamera> open_viewed_camera(const ViewArguments& arguments) {
-    if (arguments.sources.size() != 1 || !is_running_camera(arguments.sources.front())) return {};
+ViewedCameraOptions camera_options(const ViewArguments& arguments) {
     const std::string& address = arguments.sources.front();
-    return std::make_unique<ViewedCamera>(ViewedCameraOptions{
+    return {
         .address = address,
         .open =
             [address, buffers = arguments.camera.buffers](const CameraSettings& settings) {
@@ -78,24 +77,18 @@ std::unique_ptr<ViewedCamera> open_viewed_camera(const ViewArguments& arguments)
         .black_level_dn = arguments.black_level_dn,
         .folder = arguments.folder,
         .tell = say_event,
-        .warn = [](const Message& warning) { say_warning(warning); }});
+        .warn = [](const Message& warning) { say_warning(warning); }};
 }
 
-ViewOptions view_options(const ViewArguments& arguments, ViewedCamera* camera) {
-    ViewOptions options{.sources = {},
-                        .camera = camera,
-                        .truth = arguments.truth,
-                        .footage = arguments.footage,
-                        .decoding = read_decode_setup(arguments.method, Config({})),
-                        .calibration = calibration_choice(arguments.calibration),
-                        .command = own_command(),
-                        .warn = [](const Message& warning) { say_warning(warning); }};
-    if (camera != nullptr) return options;
-    for (const std::string& source : arguments.sources) {
-        check_source(source);
-        options.sources.emplace_back(source);
-    }
-    return options;
+/// Without sources.
+ViewOptions view_options(const ViewArguments& arguments) {
+    return ViewOptions{.sources = {},
+                       .truth = arguments.truth,
+                       .footage = arguments.footage,
+                       .decoding = read_decode_setup(arguments.method, Config({})),
+                       .calibration = calibration_choice(arguments.calibration),
+                       .command = own_command(),
+                       .warn = [](const Message& warning) { say_warning(warning); }};
 }
 
 /// Shows a page in the browser that the user has chosen for the desktop.
@@ -107,17 +100,17 @@ void open_browser(std::string url) {
         say_warning("xdg-open (package xdg-utils) is not there; open the address in a browser");
 }
 
-void view(const ViewArguments& arguments, const RunOptions& run) {
-    JsonFile json(run);
-    const auto camera = open_viewed_camera(arguments);
-    ViewPage page(view_options(arguments, camera.get()));
+/// Shows `page` until a signal comes.
+template <typename Page>
+void serve(Page& page, const ViewArguments& arguments, JsonFile& json, const RunOptions& run) {
     const PageServer server(arguments.server,
                             [&](const PageRequest& request) { return page.answer(request); });
+    const FrameShape shape = page.shape();
     json.write({{"url", server.url()},
                 {"slots", page.slots()},
-                {"rows", page.shape().rows},
-                {"cols", page.shape().cols},
-                {"planes", page.shape().planes}});
+                {"rows", shape.rows},
+                {"cols", shape.cols},
+                {"planes", shape.planes}});
     run.say(fmt::format("{}\nOpen this address in a browser. Ctrl-C ends the page.", server.url()));
     if (std::fflush(stdout) != 0)  // a page whose address nobody sees
         throw std::system_error(errno, std::generic_category(), "standard output");
@@ -125,6 +118,21 @@ void view(const ViewArguments& arguments, const RunOptions& run) {
     while (stop_signal() == 0) std::this_thread::sleep_for(std::chrono::milliseconds(100));
     page.end();
     throw_if_stopped();
+}
+
+void view(const ViewArguments& arguments, const RunOptions& run) {
+    JsonFile json(run);
+    if (arguments.sources.size() == 1 && is_running_camera(arguments.sources.front())) {
+        CameraPage page(camera_options(arguments), view_options(arguments));
+        return serve(page, arguments, json, run);
+    }
+    ViewOptions options = view_options(arguments);
+    for (const std::string& source : arguments.sources) {
+        check_source(source);
+        options.sources.emplace_back(source);
+    }
+    ViewPage page(options);
+    serve(page, arguments, json, run);
 }
 
 void add_running_camera_options(Command& command, ViewArguments& options) {
@@ -142,19 +150,6 @@ void add_running_camera_options(Command& command, ViewArguments& options) {
     command.add_option("--recordings", options.folder, "folder of recordings of the camera")
         .default_text("the current one")
         .type_name("DIR");
-}
-
-void add_server_options(Command& command, const std::shared_ptr<ViewArguments>& options) {
-    command.add_option("--port", options->server.port, "TCP port of the page")
-        .default_text("a free one")
-        .check(whole_check(1, 65535))
-        .type_name("N");
-    command
-        .add_option("--address", options->server.address,
-                    "address of the network interface; 0.0.0.0 serves every network, unencrypted")
-        .shows_default()
-        .type_name("IP");
-    command.add_flag("--open", options->open, "show the page in the browser of the desktop");
 }
 
 }  // namespace
@@ -182,7 +177,8 @@ void add_view(Command& app, Action& action) {
         .type_name("FILE");
     add_footage_arguments(command, options->footage);
     add_running_camera_options(command, *options);
-    add_server_options(command, options);
+    add_page_server_options(command, options->server);
+    command.add_flag("--open", options->open, "show the page in the browser of the desktop");
     add_threads(command, action.options);
     command.footer(
         "Examples:\n"

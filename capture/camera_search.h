@@ -32,6 +32,7 @@ struct CameraFeature {
     /// integer, float, boolean, choice, text, command, mask (bits), register or unknown
     std::string type = {};
     std::string access = {};                    ///< "rw", "ro", "wo"; "na": not available now
+    bool locked = false;                        ///< "ro" or "na" only while frames come
     std::optional<std::string> value = {};      ///< if it can be read
     std::string unit = {};                      ///< empty: none
     std::optional<std::string> minimum = {};    ///< of numbers, if the camera tells

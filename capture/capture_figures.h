@@ -38,6 +38,7 @@ void visit_feature_figures(const CameraFeature& feature, const Add& add) {
     add("category", feature.category);
     add("type", feature.type);
     add("access", feature.access);
+    add("locked", feature.locked);
     add("value", feature.value);
     add("unit", feature.unit);
     add("minimum", feature.minimum);

@@ -101,16 +101,18 @@ void LiveEmulator::hold_missing(const FrameRecord& record) {
     const std::uint64_t lost = lost_to_hold(gap.lost);
     const std::uint64_t unread = record.cause == GapCause::kQueueDrop ? lost : 0;
     const std::uint64_t slots = lost + incomplete;
-    for (std::uint64_t slot = 0; slot < slots; ++slot) expose(monotonic_ns(), slot >= unread);
+    for (std::uint64_t slot = 0; slot < slots; ++slot)
+        expose({{}, {}, monotonic_ns()}, slot >= unread);
     result_.held_slots += slots;
     result_.dropped_slots += unread;
     result_.totals.lost[static_cast<std::size_t>(record.cause)] += gap.lost;
     result_.totals.incomplete += incomplete;
 }
 
-void LiveEmulator::expose(std::int64_t arrival_ns, bool is_read) {
+/// `slot` gets its packets here.
+void LiveEmulator::expose(const LiveSlot& slot, bool is_read) {
     const auto packets = is_read ? recorder_.expose(light_) : recorder_.expose_unread(light_);
-    if (options_.show) options_.show(packets, arrival_ns);
+    if (options_.show) options_.show({slot.payload, packets, slot.arrival_ns});
 }
 
 void LiveEmulator::take(const CapturedFrame& frame) {
@@ -123,7 +125,7 @@ void LiveEmulator::take(const CapturedFrame& frame) {
     if (frame.record.status != FrameStatus::kComplete) return;
     to_light_.convert(frame.payload, light_);
     const std::int64_t arrival_ns = frame.record.host_monotonic_ns;
-    expose(arrival_ns);
+    expose({frame.payload, {}, arrival_ns});
     last_done_ns_ = monotonic_ns();
     if (result_.latencies.count() == 0) first_done_ns_ = last_done_ns_;
     const auto latency_us = static_cast<double>(last_done_ns_ - arrival_ns) * 1e-3;

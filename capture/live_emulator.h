@@ -28,11 +28,18 @@ struct LeftOut {
 /// Text of a warning about it; `address` is that of the camera.
 [[nodiscard]] std::string left_out_text(const std::string& address, const LeftOut& left_out);
 
+/// What became of a slot.
+struct LiveSlot {
+    std::span<const std::uint8_t> payload;  ///< of the frame; empty if the one before is repeated
+    std::span<const SamplePacket> packets;
+    std::int64_t arrival_ns = 0;  ///< when the light came (CLOCK_MONOTONIC)
+};
+
 struct LiveEmulatorOptions {
     CaptureLimits limits = {};
     double late_after_slots = 2;  ///< from frame in to packets out
-    /// Given the packets of each slot, and when its light came (CLOCK_MONOTONIC); may be empty.
-    std::function<void(std::span<const SamplePacket> packets, std::int64_t arrival_ns)> show = {};
+    /// Given each slot; may be empty.
+    std::function<void(const LiveSlot& slot)> show = {};
     /// Told the first time that frames are left out; may be empty.
     std::function<void(const LeftOut&)> tell = {};
 };
@@ -81,7 +88,7 @@ class LiveEmulator {
     void take(const CapturedFrame& frame);
     [[nodiscard]] std::uint64_t lost_to_hold(std::uint64_t lost);
     void hold_missing(const FrameRecord& record);
-    void expose(std::int64_t arrival_ns, bool is_read = true);
+    void expose(const LiveSlot& slot, bool is_read = true);
 
     LiveCamera& camera_;
     FrameLight to_light_;

@@ -79,7 +79,7 @@ LiveEmulation emulate_live(const CameraTask& task, const LiveTask& live, LiveSet
         warnings.take(left_out_text(task.address, left_out));
     };
     if (auto& preview = setup.preview)
-        options.show = [&](auto packets, auto arrival_ns) { preview->add(packets, arrival_ns); };
+        options.show = [&](const LiveSlot& slot) { preview->add(slot.packets, slot.arrival_ns); };
     LiveEmulator emulator(setup.camera, setup.to_light, recorder, std::move(options));
     bool goes_on = true;
     LiveEmulation result = emulator.run([&](const LiveEmulation& now) {

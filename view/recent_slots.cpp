@@ -12,12 +12,13 @@ namespace stipple {
 namespace {
 
 constexpr std::size_t kLeastSlots = 48;
+constexpr double kMaxBytes = 128 << 20U;
 
-std::size_t slots_in(std::size_t max_bytes, const FrameLayout& layout, const StreamHeader& header) {
+std::size_t slots_to_keep(const FrameLayout& layout, const StreamHeader& header) {
     const double samples =
         static_cast<double>(header.shape.sites()) * header.schedule.samples_per_pixel_slot();
     const double bytes = static_cast<double>(layout.payload_bytes()) + 2 * samples;
-    return std::max(kLeastSlots, static_cast<std::size_t>(static_cast<double>(max_bytes) / bytes));
+    return std::max(kLeastSlots, static_cast<std::size_t>(kMaxBytes / bytes));
 }
 
 /// The light of a mosaic as three planes: that of each colour in the cell of 2 x 2 pixels. Pixels
@@ -45,11 +46,10 @@ std::vector<float> coloured(std::span<const float> mosaic, FrameShape shape, Col
 
 }  // namespace
 
-RecentSlots::RecentSlots(const FrameLayout& layout, double black_level_dn, StreamHeader header,
-                         std::size_t max_bytes)
+RecentSlots::RecentSlots(const FrameLayout& layout, double black_level_dn, StreamHeader header)
     : header_(std::move(header)),
       to_light_(layout, black_level_dn),
-      most_(slots_in(max_bytes, layout, header_)) {}
+      most_(slots_to_keep(layout, header_)) {}
 
 void RecentSlots::add(std::span<const std::uint8_t> payload, std::span<const SamplePacket> packets,
                       std::int64_t arrival_ns) {
@@ -59,6 +59,7 @@ void RecentSlots::add(std::span<const std::uint8_t> payload, std::span<const Sam
         slot = std::move(slots_.front());
         slots_.pop_front();
     }
+    if (payload.empty() && !slots_.empty()) payload = slots_.back().payload;
     slot.payload.assign(payload.begin(), payload.end());
     slot.packets.assign(packets.begin(), packets.end());
     slot.arrival_ns = arrival_ns;

@@ -16,11 +16,10 @@ namespace stipple {
 /// of them. For several threads.
 class RecentSlots {
   public:
-    /// Keeps as many slots as `max_bytes` hold, and 48 at least.
-    RecentSlots(const FrameLayout& layout, double black_level_dn, StreamHeader header,
-                std::size_t max_bytes);
+    /// Keeps as many slots as 128 MB hold, and 48 at least.
+    RecentSlots(const FrameLayout& layout, double black_level_dn, StreamHeader header);
 
-    /// The next slot. Copies both.
+    /// The next slot. Copies both. Without payload it has the frame of the slot before.
     void add(std::span<const std::uint8_t> payload, std::span<const SamplePacket> packets,
              std::int64_t arrival_ns);
     /// No more slots come.

@@ -96,7 +96,7 @@ void ViewPage::add_stream(const std::filesystem::path& file, const ViewOptions& 
         {stream.name(), fmt::format("{}, decoded", file.string()), streams_.size() - 1, &decoder});
 }
 
-void ViewPage::add_camera(ViewedCamera& camera) {
+void ViewPage::add_camera(CameraView& camera) {
     RecentSlots& recent = camera.recent();
     title_ = camera.name();
     shape_ = decoded_shape(recent.header());
@@ -166,9 +166,21 @@ std::string ViewPage::html() {
     return view_page(title_, data());
 }
 
+/// How old the frame of a running camera is.
+void ViewPage::add_age(PageAnswer& answer, std::int64_t slot) const {
+    const std::int64_t arrival_ns = camera_ == nullptr ? 0 : camera_->recent().arrival_ns(slot);
+    if (arrival_ns > 0)
+        answer.fields["Stipple-Age-Ms"] =
+            fmt::format("{:.1f}", static_cast<double>(monotonic_ns() - arrival_ns) * 1e-6);
+}
+
 std::optional<PageAnswer> ViewPage::picture(const Video& video, std::int64_t slot,
                                             const PageRequest& request) {
-    if (video.codes) return plane_answer(video.codes(slot));
+    if (video.codes) {
+        PageAnswer answer = plane_answer(video.codes(slot));
+        add_age(answer, slot);
+        return answer;
+    }
     using Level = SlotDecoder::Level;
     const auto than = std::clamp<std::int64_t>(request.number("than").value_or(0), 0, 3);
     const auto wait = std::clamp<std::int64_t>(request.number("wait").value_or(0), 0, kMaxWaitMs);
@@ -178,6 +190,7 @@ std::optional<PageAnswer> ViewPage::picture(const Video& video, std::int64_t slo
                                slot, static_cast<Level>(than), std::chrono::milliseconds(wait));
     if (!found) return plane_answer({});
     PageAnswer answer = plane_answer(*found->codes);
+    add_age(answer, slot);
     answer.fields["Stipple-Level"] = std::to_string(static_cast<int>(found->level));
     answer.fields["Stipple-Method"] = video.decoder->name_of(found->level);
     return answer;
@@ -187,7 +200,10 @@ std::optional<PageAnswer> ViewPage::plane(const std::string& id, const PageReque
     const auto wanted = parsed(id);
     if (!wanted) return {};
     const SlotExtent now = extent();
-    if (wanted->slot < now.first || wanted->slot >= now.slots) return {};
+    if (wanted->slot < now.first || wanted->slot >= now.slots) {
+        if (camera_ == nullptr) return {};
+        return plane_answer({});  // forgotten meanwhile, or of the camera before it was opened anew
+    }
     if (wanted->kind == 'v' && wanted->of == 0 && wanted->number < videos_.size())
         return picture(videos_[wanted->number], wanted->slot, request);
     if (wanted->kind != 'r' || wanted->number >= streams_.size()) return {};
@@ -288,16 +304,10 @@ std::optional<PageAnswer> ViewPage::ask_camera(const std::string& what) {
 
 std::optional<PageAnswer> ViewPage::act(const PageRequest& request) {
     if (camera_ == nullptr) return {};
-    const auto key = [&](const char* name) {
-        const auto found = request.keys.find(name);
-        return found == request.keys.end() ? std::string() : found->second;
-    };
     if (request.path == "camera/record")
         camera_->record();
     else if (request.path == "camera/stop")
         camera_->stop_recording();
-    else if (request.path == "camera/set")
-        camera_->set(key("feature"), key("value"));
     else
         return {};
     return json_answer(camera_->status());

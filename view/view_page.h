@@ -14,10 +14,10 @@
 #include "io/footage_reader.h"
 #include "session/decode_setup.h"
 #include "session/stream_calibration.h"
+#include "view/camera_view.h"
 #include "view/page_server.h"
 #include "view/slot_decoder.h"
 #include "view/stream_timeline.h"
-#include "view/viewed_camera.h"
 #include "view/viewed_stream.h"
 #include "view/viewed_video.h"
 
@@ -26,7 +26,7 @@ namespace stipple {
 /// What a page shows.
 struct ViewOptions {
     std::vector<std::filesystem::path> sources;  ///< sample streams, and footage or decoded videos
-    ViewedCamera* camera = nullptr;              ///< in place of sources
+    CameraView* camera = nullptr;                ///< in place of sources
     std::filesystem::path truth = {};            ///< footage that the sensor saw; empty: none
     FootageOptions footage = {};
     DecodeSetup decoding = {};  ///< of the blocks
@@ -55,8 +55,8 @@ class ViewPage {
     /// - "samples" ("run", "row", "col", "first", "end"): JSON, ViewedStream::samples_of_pixel;
     /// - "timeline" ("run"): JSON, StreamTimeline::json;
     /// - "readout" ("run", "slot"): JSON, readout_lanes_json;
-    /// - "camera", "camera/features": JSON, ViewedCamera::status and features; the acts
-    ///   "camera/record", "camera/stop" and "camera/set" ("feature", "value");
+    /// - "camera", "camera/features": JSON, CameraView::status and features; the acts
+    ///   "camera/record" and "camera/stop";
     /// - "light" ("video", "row", "col", "plane", "first", "end"): JSON, [slot, code] where known.
     /// \throws InputError if a picture cannot be made.
     [[nodiscard]] std::optional<PageAnswer> answer(const PageRequest& request);
@@ -75,7 +75,7 @@ class ViewPage {
         SlotDecoder* decoder = nullptr;
         std::function<std::vector<std::uint16_t>(std::int64_t slot)> codes = {};  ///< no decoder
     };
-    void add_camera(ViewedCamera& camera);
+    void add_camera(CameraView& camera);
     void add_stream(const std::filesystem::path& file, const ViewOptions& options);
     void add_footage(const std::filesystem::path& source, const ViewOptions& options);
     void require_shape(FrameShape shape, const std::filesystem::path& source);
@@ -89,13 +89,14 @@ class ViewPage {
                                                   const PageRequest& request);
     [[nodiscard]] std::optional<PageAnswer> picture(const Video& video, std::int64_t slot,
                                                     const PageRequest& request);
+    void add_age(PageAnswer& answer, std::int64_t slot) const;
     [[nodiscard]] std::optional<PageAnswer> samples(const PageRequest& request);
     [[nodiscard]] std::optional<std::size_t> run_of(const PageRequest& request) const;
     [[nodiscard]] std::optional<PageAnswer> light(const PageRequest& request);
 
     std::string title_;
     std::string command_;
-    ViewedCamera* camera_;
+    CameraView* camera_;
     std::atomic<bool> ended_ = false;
     FrameShape shape_{};
     std::vector<std::string> notes_;

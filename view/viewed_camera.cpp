@@ -5,7 +5,6 @@
 #include <nlohmann/json.hpp>
 #include <utility>
 
-#include "capture/camera_search.h"
 #include "capture/capture_figures.h"
 #include "capture/recording/frame_recording.h"
 #include "core/error.h"
@@ -20,9 +19,7 @@ using nlohmann::ordered_json;
 
 constexpr std::chrono::milliseconds kPollInterval{20};
 constexpr std::size_t kWaitingFrames = 16;  ///< for the emulation
-constexpr std::size_t kRecentBytes = std::size_t{128} << 20U;
 constexpr std::size_t kRecordingBytes = std::size_t{1} << 28U;
-constexpr std::size_t kMaxEvents = 100;
 
 std::uint64_t all_lost(const SessionTotals& totals) {
     std::uint64_t sum = 0;
@@ -59,9 +56,8 @@ ViewedCamera::ViewedCamera(ViewedCameraOptions options)
           return set_up_sensor(options_.sensor, light.shape(), light.filter());
       }()),
       recent_(std::make_unique<RecentSlots>(layout_, options_.black_level_dn,
-                                            stream_header_of(setup_, {}), kRecentBytes)),
-      frames_(kWaitingFrames, kRecordingBytes),
-      start_ns_(monotonic_ns()) {
+                                            stream_header_of(setup_, {}))),
+      frames_(kWaitingFrames, kRecordingBytes) {
     for (const Message& warning : description_.warnings) options_.warn(warning);
     receiver_ = std::jthread([this](const std::stop_token& stop) { receive(stop); });
     emulator_ = std::jthread([this] { emulate(); });
@@ -120,22 +116,12 @@ void ViewedCamera::in_session(std::function<void()> task) {
     done.get();
 }
 
-void ViewedCamera::add_event(const std::string& text) {
-    const std::lock_guard lock(mutex_);
-    events_.emplace_back(static_cast<double>(monotonic_ns() - start_ns_) * 1e-9, text);
-    if (events_.size() > kMaxEvents) events_.pop_front();
-}
-
 void ViewedCamera::take(SessionEvent event) {
     if (auto* const frame = std::get_if<CapturedFrame>(&event)) return take(std::move(*frame));
     if (std::holds_alternative<NoFrame>(event)) return;
     options_.tell(event);
-    if (const auto* const outage = std::get_if<Outage>(&event))
-        add_event("the camera is lost: " + outage->reason);
-    if (const auto* const back = std::get_if<Recovery>(&event))
-        add_event(fmt::format("the camera is back after {:.1f} s", back->gone_s));
+    events_.add(event);
     if (const auto* const lost = std::get_if<DeviceLost>(&event)) {
-        add_event(lost->reason);
         const std::lock_guard lock(mutex_);
         ended_ = lost->reason;
     }
@@ -144,8 +130,8 @@ void ViewedCamera::take(SessionEvent event) {
 void ViewedCamera::take(CapturedFrame frame) {
     const FrameRecord& record = frame.record;
     if (record.lost_before > 0)
-        add_event(fmt::format("{} lost before frame {}: {}", record.lost_before, record.id,
-                              name_in(kGapCauses, record.cause)));
+        events_.add(fmt::format("{} lost before frame {}: {}", record.lost_before, record.id,
+                                name_in(kGapCauses, record.cause)));
     {
         const std::lock_guard lock(mutex_);
         rate_.add(record);
@@ -224,10 +210,10 @@ void ViewedCamera::end_recording() {
                 const RecordingResult made = recording->frames.finish(end);
                 std::uint64_t lost = 0;
                 for (const std::uint64_t of_cause : made.end.lost) lost += of_cause;
-                add_event(fmt::format("{}: {} frames, {} lost", file, made.end.frames, lost));
+                events_.add(fmt::format("{}: {} frames, {} lost", file, made.end.frames, lost));
                 if (made.failure) std::rethrow_exception(made.failure);
             } catch (const std::exception& e) {
-                add_event(fmt::format("{}: {}", file, e.what()));
+                events_.add(fmt::format("{}: {}", file, e.what()));
             }
         }));
 }
@@ -239,16 +225,24 @@ void ViewedCamera::set(const std::string& feature, const std::string& value) {
         std::erase_if(settings_, [&](const auto& setting) { return setting.first == feature; });
         settings_.emplace_back(feature, value);
     });
-    add_event(fmt::format("{} = {}", feature, value));
+    events_.add(fmt::format("{} = {}", feature, value));
+}
+
+CameraSettings ViewedCamera::settings() const {
+    const std::lock_guard lock(settings_mutex_);
+    return settings_;
+}
+
+bool ViewedCamera::records() const {
+    const std::lock_guard lock(mutex_);
+    return !file_.empty();
 }
 
 ordered_json ViewedCamera::status() const {
     const std::lock_guard lock(mutex_);
-    ordered_json events = ordered_json::array();
-    for (const auto& [seconds, text] : events_)
-        events.push_back({{"seconds", seconds}, {"text", text}});
     ordered_json recording = nullptr;
-    if (!file_.empty()) recording = {{"file", file_}, {"frames", recorded_}, {"lost", lost_}};
+    if (!file_.empty())
+        recording = {{"file", file_}, {"frames", recorded_}, {"lost", lost_}, {"stop", true}};
     return {{"frames", totals_.frames},
             {"frames_hz", or_null(rate_.hz())},
             {"lost", json_of([&](const auto& add) { visit_lost_figures(totals_, add); })},
@@ -256,15 +250,8 @@ ordered_json ViewedCamera::status() const {
             {"outages", totals_.outages},
             {"skipped", skipped_},
             {"recording", recording},
-            {"events", events},
+            {"events", events_.json()},
             {"ended", ended_.empty() ? ordered_json(nullptr) : ordered_json(ended_)}};
-}
-
-ordered_json ViewedCamera::features() const {
-    ordered_json list = ordered_json::array();
-    for (const CameraFeature& feature : camera_features(options_.address, ""))
-        list.push_back(json_of([&](const auto& add) { visit_feature_figures(feature, add); }));
-    return list;
 }
 
 }  // namespace stipple

@@ -17,7 +17,7 @@
 #include "capture/frame_queue.h"
 #include "capture/frame_sequence.h"
 #include "readout/sensor_file.h"
-#include "view/recent_slots.h"
+#include "view/camera_view.h"
 
 namespace stipple {
 
@@ -37,34 +37,27 @@ struct ViewedCameraOptions {
 /// A running camera that is looked at: its frames, and what the emulated sensor makes of them. A
 /// thread receives the frames; those that are recorded never wait for the other threads. Another
 /// one emulates the frames that it has the time for. For several threads.
-class ViewedCamera {
+class ViewedCamera : public CameraView {
   public:
     /// Opens and starts the camera. \throws InputError, DeviceError as CaptureSession, FrameLight
     /// and set_up_sensor.
     explicit ViewedCamera(ViewedCameraOptions options);
     /// Ends the recording, if there is one.
-    ~ViewedCamera();
-    ViewedCamera(const ViewedCamera&) = delete;
-    ViewedCamera& operator=(const ViewedCamera&) = delete;
+    ~ViewedCamera() override;
 
-    [[nodiscard]] const std::string& address() const { return options_.address; }
-    /// Vendor and model.
-    [[nodiscard]] std::string name() const;
-    [[nodiscard]] RecentSlots& recent() { return *recent_; }
+    [[nodiscard]] const std::string& address() const override { return options_.address; }
+    [[nodiscard]] std::string name() const override;
+    [[nodiscard]] RecentSlots& recent() const override { return *recent_; }
+    [[nodiscard]] nlohmann::ordered_json status() const override;
 
-    /// `frames`, `frames_hz`, `lost` by cause, `incomplete`, `outages`; `skipped`, frames that the
-    /// emulation was too slow for; `recording`: null, or `file`, `frames`, `lost`; `events`, the
-    /// last 100, each `seconds` since the start and `text`; `ended`: null, or why no frame comes.
-    [[nodiscard]] nlohmann::ordered_json status() const;
-    /// As `stipple capture features`, of the camera as it runs.
-    [[nodiscard]] nlohmann::ordered_json features() const;
-
-    /// Records from now on, to a new file that is named by the time. \throws InputError,
-    /// DeviceError as PendingOutput and RecordingWriter; InputError if it records already.
-    void record();
-    /// \throws InputError if it does not record.
-    void stop_recording();
-    /// Sets a feature of the camera. \throws InputError, DeviceError as Camera::set.
+    /// To a new file that is named by the time. \throws InputError, DeviceError as PendingOutput
+    /// and RecordingWriter.
+    void record() override;
+    void stop_recording() override;
+    /// With what `set` has changed.
+    [[nodiscard]] CameraSettings settings() const;
+    [[nodiscard]] bool records() const;
+    /// Sets a feature of the camera. \throws InputError, DeviceError as CaptureSession::set.
     void set(const std::string& feature, const std::string& value);
 
   private:
@@ -79,8 +72,6 @@ class ViewedCamera {
     void take(CapturedFrame frame);
     void emulate();
     void end_recording();
-    void add_event(const std::string& text);
-    void note_totals();
 
     ViewedCameraOptions options_;
     mutable std::mutex settings_mutex_;
@@ -91,7 +82,7 @@ class ViewedCamera {
     SensorSetup setup_;
     std::unique_ptr<RecentSlots> recent_;
     FrameQueue frames_;  ///< for the emulation
-    std::int64_t start_ns_;
+    CameraEvents events_;
 
     mutable std::mutex mutex_;  ///< of what follows
     std::deque<std::packaged_task<void()>> tasks_;
@@ -102,7 +93,6 @@ class ViewedCamera {
     std::uint64_t recorded_ = 0;  ///< frames of recording_
     std::uint64_t lost_ = 0;      ///< of them
     std::string file_;            ///< of recording_; empty: none
-    std::deque<std::pair<double, std::string>> events_;
     std::string ended_;
 
     std::unique_ptr<Recording> recording_;      ///< of the receiving thread

@@ -40,21 +40,23 @@ std::string type_of(ArvGcNode* node) {
     return ARV_IS_GC_REGISTER(node) ? "register" : "unknown";
 }
 
-std::string access_of(const std::string& address, ArvGcFeatureNode* node) {
+/// `access` and `locked`.
+void describe_access(const std::string& address, ArvGcFeatureNode* node, CameraFeature& feature) {
+    feature.access = "na";
     GlibError error;
     const bool available = arv_gc_feature_node_is_available(node, error.slot()) != FALSE;
     error.check_answer(address);
-    if (!available) return "na";
+    if (!available) return;
     const bool locked = arv_gc_feature_node_is_locked(node, error.slot()) != FALSE;
     error.check_answer(address);
-    switch (arv_gc_feature_node_get_actual_access_mode(node)) {
-        case ARV_GC_ACCESS_MODE_RO:
-            return "ro";
-        case ARV_GC_ACCESS_MODE_WO:
-            return locked ? "na" : "wo";
-        default:
-            return locked ? "ro" : "rw";
-    }
+    const ArvGcAccessMode mode = arv_gc_feature_node_get_actual_access_mode(node);
+    feature.locked = locked && mode != ARV_GC_ACCESS_MODE_RO;
+    if (mode == ARV_GC_ACCESS_MODE_RO)
+        feature.access = "ro";
+    else if (mode == ARV_GC_ACCESS_MODE_WO)
+        feature.access = locked ? "na" : "wo";
+    else
+        feature.access = locked ? "ro" : "rw";
 }
 
 void describe_number(const std::string& address, ArvGcNode* node, CameraFeature& feature) {
@@ -89,8 +91,8 @@ CameraFeature described(const AravisDevice& device, ArvGcNode* node, const Featu
     auto* const feature_node = ARV_GC_FEATURE_NODE(node);
     CameraFeature feature{.name = name.name,
                           .category = name.category,
-                          .type = type_of(node),
-                          .access = access_of(device.address(), feature_node)};
+                          .type = type_of(node)};
+    describe_access(device.address(), feature_node, feature);
     feature.text = text_of(arv_gc_feature_node_get_tooltip(feature_node));
     if (feature.text.empty())
         feature.text = text_of(arv_gc_feature_node_get_description(feature_node));

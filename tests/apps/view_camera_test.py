@@ -1,6 +1,7 @@
 """`stipple view` of a running camera, which `capture serve` is: its frames, the samples that the chip would make of
 them, recordings and features, and a camera that goes away."""
 
+import json
 import os
 import subprocess
 import threading
@@ -16,14 +17,15 @@ ROWS, COLS, FRAMES_HZ = 48, 64, 100
 FULL_SCALE = 65535
 
 
-class ViewCameraTest(ProgramTest):
+class ServedCamera(ProgramTest):
+    """A camera of random light at an address of its own."""
     count = 0
 
     def setUp(self):
         super().setUp()
         if "built without" in self.run_program("capture", "list").stdout:
             self.skipTest("built without Aravis")
-        ViewCameraTest.count += 1
+        ServedCamera.count += 1
         number = os.getpid()
         self.ip = f"127.{150 + self.count}.{number >> 8 & 255}.{number & 255 or 1}"
         self.address = f"gige:{self.ip}"
@@ -41,15 +43,17 @@ class ViewCameraTest(ProgramTest):
         watchdog.cancel()
         return camera
 
-    def view(self, *options):
-        return Viewer(self, self.address, *options)
-
     def until(self, condition):
         deadline = time.monotonic() + 60
         while not (value := condition()):
             self.assertLess(time.monotonic(), deadline)
             time.sleep(0.05)
         return value
+
+
+class ViewCameraTest(ServedCamera):
+    def view(self, *options):
+        return Viewer(self, self.address, *options)
 
     def act(self, viewer, what, expected=200, **keys):
         status, _, answer = viewer.ask(f"camera/{what}", method="POST", **keys)
@@ -63,7 +67,7 @@ class ViewCameraTest(ProgramTest):
         _, codes = viewer.picture(0, status["slots"] - 1)
         distance = [np.abs(light_of(codes) / frame.ravel() - 1).max() for frame in self.light]
         self.assertLess(min(distance), 0.003)  # of a code
-        self.assertEqual(viewer.ask(f"plane/v0-{status['slots'] + 1000}")[0], 404)
+        self.assertEqual(viewer.ask(f"plane/v0-{status['slots'] + 1000}")[2], b"")
 
     def test_samples_are_those_of_emulate(self):
         """Of a scene that does not move: there each frame of the camera is that of the footage."""
@@ -135,6 +139,20 @@ class ViewCameraTest(ProgramTest):
         frames = viewer.json("camera")["frames"]
         self.until(lambda: viewer.json("camera")["frames"] > frames)
 
+    def test_a_feature_that_is_locked_while_frames_come_opens_the_camera_anew(self):
+        self.serve()
+        viewer = self.view()
+        region = {feature["name"]: feature for feature in viewer.json("camera/features")}["Height"]
+        self.assertTrue(region["locked"])
+        self.assertEqual(json.loads(self.act(viewer, "set", feature="Height", value=ROWS // 2, stopped=1)), {"reload": True})
+        self.assertIn(f'"rows":{ROWS // 2}', viewer.ask()[2].decode())
+        self.until(lambda: viewer.json("status")["slots"] > 5)
+        self.assertEqual(viewer.picture(0, viewer.json("status")["slots"] - 1)[1].size, ROWS // 2 * COLS)
+        self.assertIn("Height", self.act(viewer, "set", 400, feature="Height", value=1000 * ROWS, stopped=1))
+        self.until(lambda: viewer.json("status")["slots"] > 5)  # as before
+        self.act(viewer, "record")
+        self.assertIn("stop first", self.act(viewer, "set", 400, feature="Height", value=ROWS, stopped=1))
+
     def test_only_the_page_acts(self):
         self.serve()
         viewer = self.view()
@@ -152,11 +170,31 @@ class ViewCameraTest(ProgramTest):
         self.until(lambda: any("lost" in event["text"] for event in viewer.json("camera")["events"]))
         self.assertGreater(viewer.picture(0, viewer.json("status")["slots"] - 1)[1].size, 0)
 
+    def test_capture_live_shows_the_stream_that_it_writes(self):
+        self.serve()
+        live = self.start_program("capture", "live", self.address, "-o", "clip.stipple", "--frames", 400, "--view",
+                                  stdout=subprocess.PIPE)
+        self.addCleanup(live.communicate)
+        self.addCleanup(live.kill)
+        viewer = Viewer.of(live.stderr.readline().split()[-1])
+        self.until(lambda: viewer.json("status")["slots"] > 40)
+        kinds, dn = (np.frombuffer(viewer.ask(f"plane/r0{part}-30")[2], "<u2") for part in "kd")
+        _, codes = viewer.picture(0, 30)
+        self.assertLess(min(np.abs(light_of(codes) / frame.ravel() - 1).max() for frame in self.light), 0.003)
+        status = viewer.json("camera")
+        self.assertEqual(status["recording"]["file"], "clip.stipple")
+        self.assertIn("ends with the program", self.act(viewer, "stop", 400))
+        self.assertEqual(live.wait(timeout=60), 0)
+        clip = Viewer(self, "clip.stipple")
+        for part, shown in (("k", kinds), ("d", dn)):
+            np.testing.assert_array_equal(np.frombuffer(clip.ask(f"plane/r0{part}-30")[2], "<u2"), shown)
+
     def test_what_cannot_be_viewed_is_told(self):
         self.serve()
         self.fails(INPUT, ["NoSuchFeature"], "view", self.address, "--set", "camera.NoSuchFeature=1")
         self.fails(INPUT, [self.address, "a page of its own"], "view", "light.npy", self.address)
         self.fails(USAGE, ["--sensor", "no running camera"], "view", "light.npy", "--sensor", "paper")
+        self.fails(USAGE, ["--port", "add --view"], "capture", "live", self.address, "-o", "a.stipple", "--port", 8080)
 
 
 if __name__ == "__main__":

@@ -5,6 +5,7 @@ import unittest
 
 import numpy as np
 from browser import LACKING, BrowserTest, By, Keys, webdriver
+from view_camera_test import ServedCamera
 from view_test import Viewer, light_of
 
 COLS, ROWS, SLOTS = 64, 48, 60
@@ -134,6 +135,68 @@ class ViewPageTest(BrowserTest):
         self.script("chooseSlot(3)")
         self.wait(lambda: "has ended" in self.element("state").text)
         self.browser.get_log("browser")  # of requests that find nobody
+
+
+@unittest.skipIf(LACKING, LACKING)
+class CameraPageTest(BrowserTest, ServedCamera):
+    def setUp(self):
+        super().setUp()
+        self.serve()
+        self.viewer = Viewer(self, self.address)
+        self.browser.get(self.viewer.url)
+        self.addCleanup(self.browser.get, "about:blank")  # before its server ends
+        self.wait(lambda: self.script("return document.documentElement.dataset.ready === 'true'"))
+
+    def test_the_newest_slot_is_shown_until_another_one_is_chosen(self):
+        first = int(self.script("return state.slot"))
+        self.wait(lambda: int(self.script("return state.slot")) > first + 20)
+        self.wait(lambda: "after its light" in self.element("state").text)
+        self.script("chooseSlot(state.slot - 5)")
+        self.wait(lambda: not self.element("follow").is_selected())
+        still = self.script("return state.slot")
+        newest = self.script("return data.slots")
+        self.wait(lambda: self.script("return data.slots") > newest + 20)
+        self.assertEqual(self.script("return state.slot"), still)
+
+    def test_a_click_begins_and_ends_a_recording(self):
+        self.element("record").click()
+        self.wait(lambda: ".strec" in self.element("recording").text)
+        self.wait(lambda: " 0 frames" not in self.element("recording").text)
+        self.element("record").click()
+        self.wait(lambda: ".strec" in self.element("camera-events").text)
+        self.assertEqual(len(list(self.folder.glob("*.strec"))), 1)
+
+    def test_features_are_set_on_the_page(self):
+        self.script("document.getElementById('features').open = true")
+        self.element("feature-filter").send_keys("Heartbeat")
+
+        def field():
+            return self.browser.find_elements(By.CSS_SELECTOR, "#features-table input[aria-label=GevHeartbeatTimeout]")
+        self.wait(field)
+        self.script("const input = arguments[0]; input.value = '2000'; input.dispatchEvent(new Event('change'))", field()[0])
+        self.wait(lambda: self.element("feature-answer").text == "GevHeartbeatTimeout = 2000")
+        self.wait(lambda: field() and field()[0].get_attribute("value") == "2000")
+
+    def test_a_region_is_set_by_opening_the_camera_anew(self):
+        self.script("document.getElementById('features').open = true")
+        self.element("feature-filter").send_keys("Height")
+
+        def field():
+            return self.browser.find_elements(By.CSS_SELECTOR, "#features-table input[aria-label=Height]")
+        self.wait(field)
+        self.script("const input = arguments[0]; input.value = '24'; input.dispatchEvent(new Event('change'))", field()[0])
+        self.wait(lambda: self.script("return data.frame.rows") == 24)
+
+    def test_edges_and_clipped_pixels_are_marked(self):
+        self.script("choose({a: 'focus', b: 'focus'})")
+        self.wait(lambda: self.element("name-a").text == "camera, focus and clipping")
+        self.wait(lambda: "0 % at full scale" in self.element("camera-clipping").text)
+        colours = self.script("""return focusImage(data.slots - 1).then((image) => {
+          let edges = 0;
+          for (let i = 0; i < pixelCount; ++i) edges += image.data[4 * i] === 40 && image.data[4 * i + 1] === 255;
+          return edges / pixelCount;
+        })""")
+        self.assertAlmostEqual(colours, 0.02, delta=0.01)
 
 
 if __name__ == "__main__":

@@ -30,6 +30,17 @@ class Viewer:
         test.addCleanup(self.program.terminate)
         self.url = self.program.stdout.readline().strip()
         test.assertTrue(self.url, "no address: see standard error")
+        self.use_address()
+
+    @classmethod
+    def of(cls, url):
+        """Of a page that another program serves."""
+        viewer = cls.__new__(cls)
+        viewer.url = url
+        viewer.use_address()
+        return viewer
+
+    def use_address(self):
         self.port = urlsplit(self.url).port
         self.path = urlsplit(self.url).path
 

@@ -30,8 +30,8 @@ class LiveEmulatorTest : public ::testing::Test {
                                                       .waiting_frames = waiting_frames,
                                                       .from_start = true,
                                                       .tell = [](const SessionEvent&) {}});
-        options.show = [this](auto packets, std::int64_t) {
-            shown_.insert(shown_.end(), packets.begin(), packets.end());
+        options.show = [this](const LiveSlot& slot) {
+            shown_.insert(shown_.end(), slot.packets.begin(), slot.packets.end());
             if (after_show_) after_show_();
         };
         LiveEmulator emulator(camera, to_light_, recorder_, std::move(options));

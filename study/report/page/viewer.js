@@ -129,7 +129,8 @@ async function firstStops() {
 function firstChoice() {
   const {featured, truth} = data;
   const other = data.videos.findIndex((_, i) => i !== truth && i !== featured);
-  return {a: `light-${featured}`, b: `light-${truth ?? Math.max(other, 0)}`, slot: Math.floor(data.slots / 2)};
+  const slot = data.running_camera ? data.slots - 1 : Math.floor(data.slots / 2);
+  return {a: `light-${featured}`, b: `light-${truth ?? Math.max(other, 0)}`, slot};
 }
 
 function setUpViewer() {

@@ -3,6 +3,7 @@
 // A running camera: its frames and losses, its recording and its features, and where it is in focus.
 
 const kCameraMs = 500;
+const kReadMs = 5000; // for a text
 const kShownFeatures = 200;
 const kFullScale = 0.998; // light: the code of 1 is within 0.27 %
 const kFocusPart = 0.02; // of the pixels, those with the strongest edges
@@ -28,6 +29,7 @@ function showCamera(camera) {
     ...further.filter(([count]) => count > 0).map(([count, text]) => `${count} ${text}`)].join('; ');
   element('record').textContent = recording ? '■ stop' : '● record';
   element('record').setAttribute('aria-pressed', recording !== null);
+  element('record').hidden = recording?.stop === false;
   element('recording').textContent = recording
     ? `${recording.file}: ${counted(recording.frames, 'frame')}, ${recording.lost} lost` : '';
   element('camera-events').hidden = camera.events.length === 0;
@@ -50,20 +52,25 @@ async function toggleRecording() {
   if (answer?.failure) element('recording').textContent = answer.failure;
 }
 
-async function setFeature(name, value) {
-  const answer = await act('set', {feature: name, value});
+/** Features that are locked while frames come are set by opening the camera anew. */
+async function setFeature({name, locked}, value) {
+  element('feature-answer').textContent = locked ? `${name}: opening the camera anew …` : '';
+  leaving = locked;
+  const answer = await act('set', {feature: name, value, ...(locked ? {stopped: 1} : {})});
+  if (answer?.camera?.reload) return location.reload();
   element('feature-answer').textContent = answer?.failure ?? `${name} = ${value}`;
-  await readFeatures();
+  if (leaving) return setTimeout(() => location.reload(), kReadMs); // the loops that ask have ended
+  return readFeatures();
 }
 
 /** What a feature takes its value from. */
 function featureInput(feature) {
-  if (feature.access !== 'rw') return feature.value ?? '';
+  if (feature.access !== 'rw' && !feature.locked) return feature.value ?? '';
   const choices = feature.type === 'boolean' ? ['true', 'false'] : feature.choices;
   const input = choices.length ? made('select', {'aria-label': feature.name})
     : made('input', {'aria-label': feature.name, type: 'text', size: 12, value: feature.value ?? ''});
   if (choices.length) fillSelect(input, choices.map((value) => ({value, text: value})), feature.value);
-  input.addEventListener('change', () => setFeature(feature.name, input.value));
+  input.addEventListener('change', () => setFeature(feature, input.value));
   return input;
 }
 

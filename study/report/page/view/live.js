@@ -17,6 +17,21 @@ function takeSlots(slots) {
   showSlot();
 }
 
+const shownAt = []; // of the last pictures, ms
+
+/** From the arrival of the frame to its picture on the screen. */
+function showLatency() {
+  const now = performance.now();
+  shownAt.push(now);
+  if (shownAt.length > 30) shownAt.shift();
+  const videos = shownVideos();
+  const arrival = ages.get(`v${videos.length ? videos[0] : 0}-${state.slot}`);
+  if (!arrival) return;
+  const rate = (1000 * (shownAt.length - 1)) / (now - shownAt[0]);
+  element('state').textContent = `${shown(now - arrival, 3)} ms after its light, ${shown(rate, 2)} pictures per second`;
+  ages.clear();
+}
+
 /** The newest slots of a camera, as fast as they can be shown. */
 async function followCamera() {
   for (let slots = -1; ;) {
@@ -32,6 +47,7 @@ async function followCamera() {
       chooseSlot(slots - 1 - (shownVideos().length ? kDecodedBehind : 0));
       followed = state.slot;
       await Promise.all(Object.values(latest));
+      showLatency();
     }
     showSlot();
     if (status.complete) return;

@@ -8,6 +8,8 @@ const kBestLevel = 3;
 const kChartSlots = 32; // on each side of the shown slot, and moved by as many
 const viewer = Array.from(crypto.getRandomValues(new Uint32Array(2)), (word) => word.toString(16)).join('');
 const levels = new Map(); // id of a picture -> {level, method}
+const ages = new Map(); // id of a picture of a camera -> when its light came, as performance.now()
+let leaving = false; // the page begins anew soon: it asks for nothing more
 const improving = new Set(); // ids of pictures that better ones are awaited for
 
 function isDecoded(video) {
@@ -22,17 +24,20 @@ async function broughtPicture(id, than) {
   if (bytes.byteLength === 0) return null;
   const level = Number(response.headers.get('Stipple-Level') ?? kBestLevel);
   levels.set(id, {level, method: response.headers.get('Stipple-Method') ?? ''});
+  if (response.headers.has('Stipple-Age-Ms')) ages.set(id, performance.now() - Number(response.headers.get('Stipple-Age-Ms')));
   return new Uint16Array(bytes);
 }
 
 async function broughtPlane(id) {
+  if (leaving) return null;
   if (id.startsWith('v')) {
     const codes = await broughtPicture(id, 0).catch(tellFailure);
     if (!codes) planeCache.delete(id); // to be asked for again
     return codes ?? null;
   }
   const response = await fetch(`plane/${id}`).catch(tellFailure);
-  return response?.ok ? new Uint16Array(await response.arrayBuffer()) : null;
+  const values = response?.ok ? new Uint16Array(await response.arrayBuffer()) : [];
+  return values.length > 0 ? values : null;
 }
 
 function tellFailure(failure) {
@@ -47,9 +52,14 @@ async function improve(video) {
   const id = `v${video}-${slot}`;
   if (improving.has(id)) return;
   improving.add(id);
-  while (state.slot === slot && shownVideos().includes(video)) {
+  while (!leaving && state.slot === slot && shownVideos().includes(video)) {
     if (!await plane(id) || levels.get(id)?.level >= kBestLevel) break;
-    const codes = await broughtPicture(id, levels.get(id).level).catch(tellFailure);
+    let failed = false;
+    const codes = await broughtPicture(id, levels.get(id).level).catch((failure) => {
+      failed = true;
+      return tellFailure(failure);
+    });
+    if (failed) break;
     if (!codes) continue;
     planeCache.set(id, Promise.resolve(codes));
     choose({pictures: state.pictures + 1});
@@ -77,6 +87,7 @@ function chartSlots() {
 }
 
 async function answered(path, keys) {
+  if (leaving) return null;
   const response = await fetch(`${path}?${new URLSearchParams(keys)}`).catch(tellFailure);
   return response?.ok ? response.json() : null;
 }
