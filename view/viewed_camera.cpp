@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <nlohmann/json.hpp>
 #include <utility>
 
@@ -20,6 +21,12 @@ using nlohmann::ordered_json;
 constexpr std::chrono::milliseconds kPollInterval{20};
 constexpr std::size_t kWaitingFrames = 16;  ///< for the emulation
 constexpr std::size_t kRecordingBytes = std::size_t{1} << 28U;
+
+std::string loss_text(const FrameRecord& record) {
+    std::string cause(name_in(kGapCauses, record.cause));
+    std::ranges::replace(cause, '_', ' ');
+    return fmt::format("{} lost before frame {}: {}", record.lost_before, record.id, cause);
+}
 
 std::uint64_t all_lost(const SessionTotals& totals) {
     std::uint64_t sum = 0;
@@ -51,22 +58,22 @@ ViewedCamera::ViewedCamera(ViewedCameraOptions options)
           options_.session, [](const Camera&) { return kWaitingFrames + 1; }),
       description_(session_.description()),
       layout_(session_.layout()),
-      setup_([this] {
-          const FrameLight light(layout_, options_.black_level_dn);
-          return set_up_sensor(options_.sensor, light.shape(), light.filter());
-      }()),
-      recent_(std::make_unique<RecentSlots>(layout_, options_.black_level_dn,
-                                            stream_header_of(setup_, {}))),
       frames_(kWaitingFrames, kRecordingBytes) {
     for (const Message& warning : description_.warnings) options_.warn(warning);
+    // The camera has begun: its frames are received while the sensor is set up.
     receiver_ = std::jthread([this](const std::stop_token& stop) { receive(stop); });
+    const FrameLight light(layout_, options_.black_level_dn);
+    setup_ = set_up_sensor(options_.sensor, light.shape(), light.filter());
+    recent_ = std::make_unique<RecentSlots>(layout_, options_.black_level_dn,
+                                            stream_header_of(*setup_, {}));
+    ready_ = true;
     emulator_ = std::jthread([this] { emulate(); });
 }
 
 ViewedCamera::~ViewedCamera() {
     receiver_.request_stop();
     receiver_.join();
-    emulator_.join();
+    if (emulator_.joinable()) emulator_.join();
 }
 
 std::string ViewedCamera::name() const {
@@ -128,6 +135,7 @@ void ViewedCamera::take(SessionEvent event) {
 }
 
 void ViewedCamera::take(CapturedFrame frame) {
+    if (!ready_) return session_.give_back(std::move(frame.payload));
     const FrameRecord& record = frame.record;
     if (record.lost_before > 0)
         events_.add(fmt::format("{} lost before frame {}: {}", record.lost_before, record.id,
@@ -159,7 +167,7 @@ void ViewedCamera::take(CapturedFrame frame) {
 }
 
 void ViewedCamera::emulate() {
-    Emulator emulator(setup_);
+    Emulator emulator(*setup_);
     FrameLight to_light(layout_, options_.black_level_dn);
     std::vector<float> light(to_light.shape().sites());
     while (auto frame = frames_.pop()) {

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <atomic>
 #include <cstdint>
 #include <deque>
 #include <filesystem>
@@ -79,12 +80,13 @@ class ViewedCamera : public CameraView {
     CaptureSession session_;
     CameraDescription description_;
     FrameLayout layout_;
-    SensorSetup setup_;
+    std::optional<SensorSetup> setup_;
     std::unique_ptr<RecentSlots> recent_;
     FrameQueue frames_;  ///< for the emulation
     CameraEvents events_;
 
-    mutable std::mutex mutex_;  ///< of what follows
+    std::atomic<bool> ready_ = false;  ///< frames before are discarded
+    mutable std::mutex mutex_;         ///< of what follows
     std::deque<std::packaged_task<void()>> tasks_;
     bool accepts_tasks_ = true;
     SessionTotals totals_;

@@ -89,9 +89,7 @@ std::vector<std::string> choices_of(const std::string& address, ArvGcNode* node)
 
 CameraFeature described(const AravisDevice& device, ArvGcNode* node, const FeatureName& name) {
     auto* const feature_node = ARV_GC_FEATURE_NODE(node);
-    CameraFeature feature{.name = name.name,
-                          .category = name.category,
-                          .type = type_of(node)};
+    CameraFeature feature{.name = name.name, .category = name.category, .type = type_of(node)};
     describe_access(device.address(), feature_node, feature);
     feature.text = text_of(arv_gc_feature_node_get_tooltip(feature_node));
     if (feature.text.empty())

@@ -68,7 +68,7 @@ function featureInput(feature) {
   if (feature.access !== 'rw' && !feature.locked) return feature.value ?? '';
   const choices = feature.type === 'boolean' ? ['true', 'false'] : feature.choices;
   const input = choices.length ? made('select', {'aria-label': feature.name})
-    : made('input', {'aria-label': feature.name, type: 'text', size: 12, value: feature.value ?? ''});
+    : made('input', {'aria-label': feature.name, type: 'text', value: feature.value ?? ''});
   if (choices.length) fillSelect(input, choices.map((value) => ({value, text: value})), feature.value);
   input.addEventListener('change', () => setFeature(feature, input.value));
   return input;
@@ -82,12 +82,14 @@ function featureRange({minimum, maximum, increment, unit}) {
 function showFeatures() {
   const part = element('feature-filter').value.toLowerCase();
   const found = features.filter(({name}) => name.toLowerCase().includes(part)).slice(0, kShownFeatures);
-  fillTable(element('features-table'), [['feature', 'value', 'range'],
-    ...found.map((feature) => [feature.name, featureInput(feature), featureRange(feature)])]);
+  fillTable(element('features-table'), [['feature', 'value'],
+    ...found.map((feature) => [made('span', {}, feature.name, made('small', {}, featureRange(feature))),
+                               featureInput(feature)])]);
 }
 
 async function readFeatures() {
-  features = await answered('camera/features', {}) ?? features;
+  const all = await answered('camera/features', {}) ?? features;
+  features = all.filter(({type, value}) => type !== 'command' && type !== 'register' && value !== null);
   showFeatures();
 }
 
