@@ -239,9 +239,10 @@ void restore_chain(const WindowRun& run, const float* light, float* result) {
         spread<kChain, false>(s, {ending[slot - window.begin], current}, moves);
         if (slot >= window.core_end) continue;
         const float* HWY_RESTRICT x = light + window_voxel(run, slot);
-        float* HWY_RESTRICT to = result +
-                                 static_cast<std::size_t>(slot) * run.measurements.shape.sites() +
-                                 run.sites.begin;
+        float* HWY_RESTRICT to =
+            result +
+            static_cast<std::size_t>(slot - window.core_begin) * run.measurements.shape.sites() +
+            run.sites.begin;
         for (std::size_t i = 0; i < s.sites; ++i) {
             const float step = kWeighted ? s.weight[i] * step_of(x[i]) : step_of(x[i]);
             to[i] = (kChain == Chain::kSecond ? to[i] : x[i]) + step * moves[i];

@@ -61,8 +61,8 @@ void spread_residuals(const WindowRun& run, const WindowSlots& slots, std::span<
 
 /// The core of a window: the light after a step of data consistency (data_prox.h), with step sizes
 /// proportional to the light and shrunk by r^2 / (r^2 + 3 var), r = y - A x: where the sample
-/// agrees within its noise, the light stays. `result` is the whole block, order (slot, plane, row,
-/// col).
+/// agrees within its noise, the light stays. `result` has the slots of the core, order (slot,
+/// plane, row, col).
 void restore_sums(const WindowRun& run, std::span<const float> light,
                   std::span<float> result) noexcept;
 
