@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <bit>
 #include <cassert>
 #include <optional>
 
@@ -80,27 +79,31 @@ class Collector {
     struct Span {
         std::uint64_t open_slots;
         int slots;
+        int light_slots;          ///< those of open_slots
         std::uint8_t open_state;  ///< kOpen, and the chain
     };
 
     void write(std::size_t first_voxel, std::uint16_t dn, const Span& span,
                const PixelResponse& response) {
         const auto sites = window_.shape.sites();
-        for (int i = 0; i < span.slots; ++i)
+        for (int i = 1; i + 1 < span.slots; ++i)
             if ((span.open_slots >> static_cast<unsigned>(i) & 1U) != 0)
                 out_.state[first_voxel + index(i) * sites] = span.open_state;
         const std::size_t last_voxel = first_voxel + index(span.slots - 1) * sites;
-        out_.state[first_voxel] |= Measurements::kFirst;
-        out_.state[last_voxel] |= Measurements::kLast;
-        if (response.saturated(dn)) out_.state[last_voxel] |= Measurements::kSaturated;
-        if (dn == 0) out_.state[last_voxel] |= Measurements::kZero;
-        const int open_slots = std::popcount(span.open_slots);
-        out_.sum[last_voxel] = response.light(dn, open_slots);
-        out_.variance[last_voxel] = response.noise().variance(out_.sum[last_voxel]);
+        // Stored, not changed: these voxels are far from each other, and a load would wait.
+        const int first = span.open_state | Measurements::kFirst;
+        const int last = (span.slots == 1 ? first : span.open_state) | Measurements::kLast |
+                         (response.saturated(dn) ? Measurements::kSaturated : 0) |
+                         (dn == 0 ? Measurements::kZero : 0);
+        out_.state[first_voxel] = static_cast<std::uint8_t>(first);
+        out_.state[last_voxel] = static_cast<std::uint8_t>(last);
+        const float light = response.light(dn, span.light_slots);
+        out_.sum[last_voxel] = light;
+        out_.variance[last_voxel] = response.noise().variance(light);
         if (out_.dark_variance.empty()) return;
-        out_.dark_variance[last_voxel] = response.dark_variance(dn, open_slots);
-        out_.variance_per_light[last_voxel] = response.variance_per_light(out_.sum[last_voxel]);
-        out_.variance[last_voxel] = out_.variance_at(last_voxel, out_.sum[last_voxel]);
+        out_.dark_variance[last_voxel] = response.dark_variance(dn, span.light_slots);
+        out_.variance_per_light[last_voxel] = response.variance_per_light(light);
+        out_.variance[last_voxel] = out_.variance_at(last_voxel, light);
     }
 
     struct FirstSlot {
@@ -129,7 +132,8 @@ class Collector {
     /// `begin` is 0 or more, or the pixel were not due.
     [[nodiscard]] Span span_of(std::int64_t begin, int row, int col, const DuePixel& pixel) const {
         if (pixel.light_slots == pixel.span_slots && !out_.interleaved)  // most, without a search
-            return {open_without_gap(pixel.span_slots), pixel.span_slots, Measurements::kOpen};
+            return {open_without_gap(pixel.span_slots), pixel.span_slots, pixel.light_slots,
+                    Measurements::kOpen};
         const std::int64_t period = schedule_.period_slots();
         const int tile_row = row % schedule_.tile_rows();
         const int tile_col = col % schedule_.tile_cols();
@@ -137,7 +141,8 @@ class Collector {
         const std::uint64_t open_slots = schedule_.exposures(tile_row, tile_col)[i].open_slots;
         const bool second = schedule_.store(tile_row, tile_col, i, begin / period) != 0;
         const int open_state = Measurements::kOpen | (second ? Measurements::kSecond : 0);
-        return {open_slots, pixel.span_slots, static_cast<std::uint8_t>(open_state)};
+        return {open_slots, pixel.span_slots, pixel.light_slots,
+                static_cast<std::uint8_t>(open_state)};
     }
 
     const ExposureSchedule& schedule_;

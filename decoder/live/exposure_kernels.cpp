@@ -264,8 +264,10 @@ void average_run(const WindowRun& run, float* light, std::uint8_t* known) {
     });
     average_samples(samples, window.slots(), run.measurements.shape.sites(),
                     {light + range.begin, light + range.end});
-    for (std::size_t i = range.begin; i < range.end; ++i)
-        known[i] = samples.exposed[i - range.begin] > 0 ? 1 : 0;
+    for (std::size_t i = range.begin; i < range.end; ++i) {
+        const std::size_t site = i - range.begin;
+        known[i] = samples.usable[site] > 0 ? 2 : samples.exposed[site] > 0 ? 1 : 0;
+    }
 }
 
 void spread_run(const WindowRun& run, const WindowSlots& slots, const float* light,

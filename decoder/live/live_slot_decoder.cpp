@@ -16,7 +16,7 @@ namespace {
 
 /// Even, so that the bands have the pairs of rows of their tile. More rows are further from the
 /// processor's cache, and of fewer rows more are decoded twice.
-constexpr std::int64_t kBandRows = 32;
+constexpr std::int64_t kBandRows = 48;
 
 /// Bands of the tiles in which `decode` decodes such frames.
 std::vector<Tile> bands_of(FrameShape shape) {
@@ -78,10 +78,10 @@ int slots_with_a_sample(const ExposureSchedule& schedule) {
 
 LiveSlotDecoder::Frame LiveSlotDecoder::decode(const StreamHeader& header,
                                                std::span<const SamplePacket> packets,
-                                               const VideoWindow& window, int slot) {
-    assert(window.slots <= LiveWindow::kMaxSlots && slot < window.slots);
+                                               const VideoWindow& window, const LiveWindow& live,
+                                               int slot) {
+    assert(live.begin == 0 && live.end == window.slots && live.slots() <= LiveWindow::kMaxSlots);
     const FrameShape shape = window.shape;
-    const LiveWindow live = live_window(slot, window.slots);
     const WindowDecoder::Wanted wanted{{.begin = slot, .end = slot + 1},
                                        header.schedule.longest_span_slots()};
     Frame frame{FluxVideo(1, shape), std::vector<std::uint8_t>(shape.sites())};
@@ -104,10 +104,7 @@ LiveSlotDecoder::Frame LiveSlotDecoder::decode(const StreamHeader& header,
                 decode_band(bands[band], memory_[index(i)]);
         });
     });
-    if (std::ranges::find(frame.known, 0) != frame.known.end()) {
-        std::vector<std::uint8_t> sampled(frame.known);
-        fill_unsampled(sampled, frame.light);
-    }
+    fill_unsampled(frame.known, frame.light);
     for (float& light : frame.light.data()) light = std::max(light, 0.0F);
     return frame;
 }

@@ -21,11 +21,12 @@ class LiveSlotDecoder {
         FluxVideo light;                  ///< one slot; not negative
         std::vector<std::uint8_t> known;  ///< by site, as of average_in_time
     };
-    /// Slot `slot` of `window`, whose slots are those of a live_window; the bits of `decode_live`
-    /// if each site that has samples in the block has some in the window. Others are interpolated
-    /// from their surroundings. \throws InputError as collect_measurements.
+    /// Slot `slot` of a window: `live` counts the slots of `window`, and has all of them. The bits
+    /// are those of `decode_live` if each site that has samples in the block has some in the
+    /// window; other sites are interpolated from their surroundings. \throws InputError as
+    /// collect_measurements.
     [[nodiscard]] Frame decode(const StreamHeader& header, std::span<const SamplePacket> packets,
-                               const VideoWindow& window, int slot);
+                               const VideoWindow& window, const LiveWindow& live, int slot);
 
   private:
     struct Memory {

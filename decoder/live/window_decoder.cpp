@@ -27,7 +27,7 @@ void for_each_run(const Measurements& m, const LiveWindow& window, const Body& b
 
 LiveWindow live_window(int slot, int slots) {
     const int first = slot / kLiveCoreSlots * kLiveCoreSlots;
-    return {.begin = std::max(first - kBefore, 0),
+    return {.begin = std::clamp(slots - LiveWindow::kMaxSlots, 0, std::max(first - kBefore, 0)),
             .core_begin = first,
             .core_end = std::min(first + kLiveCoreSlots, slots),
             .end = std::min(first + kLiveCoreSlots + kAfter, slots)};
@@ -37,12 +37,12 @@ void WindowDecoder::decode(const Measurements& m, const LiveWindow& window, cons
                            std::span<std::uint8_t> known, std::span<float> result) {
     const int span = wanted.longest_span_slots;
     // The exposures that are open in the slots of a step reach this far.
-    const auto before = [&](const WindowSlots& slots, int begin, int end) {
+    const auto reached = [&](const WindowSlots& slots, int begin, int end) {
         return WindowSlots{.begin = std::max(slots.begin - span + 1, begin),
                            .end = std::min(slots.end + span - 1, end)};
     };
-    const WindowSlots fine = before(wanted.slots, window.core_begin, window.core_end);
-    const WindowSlots coarse = before(fine, window.begin, window.end);
+    const WindowSlots fine = reached(wanted.slots, window.core_begin, window.core_end);
+    const WindowSlots coarse = reached(fine, window.begin, window.end);
     const std::size_t voxels = index(window.slots()) * m.shape.sites();
     for (std::vector<float>* array : {&light_, &precision_, &weighted_}) array->resize(voxels);
     const FrameShape plane{.rows = m.shape.rows, .cols = m.shape.cols, .planes = 1};
@@ -65,10 +65,11 @@ void WindowDecoder::decode(const Measurements& m, const LiveWindow& window, cons
         spread_residuals(run, fine, light_, {precision_, weighted_});
     });
     add_residuals(fine, add_fine_residuals);
-    LiveWindow shown = window;
-    shown.core_begin = wanted.slots.begin;
-    shown.core_end = wanted.slots.end;
-    for_each_run(m, shown, [&](const WindowRun& run) { restore_sums(run, light_, result); });
+    const WindowSlots last = reached(wanted.slots, window.begin, window.end);
+    const LiveWindow shown{last.begin, wanted.slots.begin, wanted.slots.end, last.end};
+    const auto light =
+        std::span(light_).subspan(index(last.begin - window.begin) * m.shape.sites());
+    for_each_run(m, shown, [&](const WindowRun& run) { restore_sums(run, light, result); });
 }
 
 }  // namespace stipple

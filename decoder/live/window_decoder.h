@@ -13,7 +13,8 @@ struct Measurements;
 /// Slots that are decoded from one window.
 inline constexpr int kLiveCoreSlots = 8;
 
-/// The window in which `decode_live` decodes a slot of a block of `slots` slots.
+/// The window in which `decode_live` decodes a slot of a block of `slots` slots: 8 slots before the
+/// core and 8 after it, or at the end of the block more before it.
 [[nodiscard]] LiveWindow live_window(int slot, int slots);
 
 /// The steps of `decode_live` in a window, in memory that is kept from one to the next.

@@ -3,8 +3,11 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <chrono>
 #include <semaphore>
 #include <stdexcept>
+#include <thread>
+#include <vector>
 
 #include "tests/decoder/recordings.h"
 
@@ -19,9 +22,14 @@ FluxVideo uniform_video() {
     return video;
 }
 
+/// Of the first 12 slots.
+constexpr int kShownSlot = 6;
+
 class LivePreviewTest : public ::testing::Test {
   protected:
-    [[nodiscard]] PreviewDecoder decoder() const { return {recorded_.header, {}}; }
+    [[nodiscard]] PreviewDecoder decoder(DecodeMethod method = DecodeMethod::kNaive) const {
+        return {recorded_.header, {.method = method, .size = {}}};
+    }
     /// Hands over all slots of the recording; a slot is a packet.
     void add_all(LivePreview& preview) const {
         for (const SamplePacket& packet : recorded_.packets) preview.add({&packet, 1}, 0);
@@ -45,7 +53,7 @@ TEST_F(LivePreviewTest, AFrameIsShownThatHasTheLightOfItsSlot) {
     add_all(preview);
     shown.acquire();
     preview.finish([] {});
-    EXPECT_EQ(frame.slot, decoder().shown_slot());
+    EXPECT_EQ(frame.slot, kShownSlot);
     EXPECT_EQ(frame.shape, recorded_.header.shape);
     EXPECT_NEAR(frame.mean_light(), 0.5, 5 * 0.0245 / 32);
     EXPECT_GE(preview.counts().made, 1);
@@ -62,9 +70,53 @@ TEST_F(LivePreviewTest, SlotsPassByWhileAFrameIsMade) {
     preview.finish([] {});
     const PreviewCounts counts = preview.counts();
     EXPECT_EQ(counts.made, 1);
-    EXPECT_EQ(counts.last_slot, decoder().shown_slot());
+    EXPECT_EQ(counts.last_slot, kShownSlot);
     EXPECT_EQ(counts.skipped_slots,
               static_cast<std::int64_t>(recorded_.packets.size()) - decoder().slots());
+}
+
+TEST_F(LivePreviewTest, OfFewerSlotsThanAWindowThereIsOneFrame) {
+    int shown = 0;
+    LivePreview preview(decoder(DecodeMethod::kLive),
+                        {.show =
+                             [&](const PreviewFrame& made) {
+                                 EXPECT_NEAR(made.mean_light(), 0.5, 5 * 0.0245 / 32);
+                                 ++shown;
+                             },
+                         .tell = [](const Message& what) { FAIL() << what.text(); },
+                         .keep_going = [] { return true; }});
+    add_all(preview);  // 20 slots
+    preview.finish([] {});
+    EXPECT_EQ(shown, 1);
+    EXPECT_EQ(preview.counts().last_slot, 11);
+    EXPECT_EQ(preview.counts().skipped_slots, 0);
+}
+
+// How many slots come until a frame is ready is not known; each frame has the bits of its slots.
+TEST_F(LivePreviewTest, AFrameOfTheMethodLiveIsDecodedFromTheSlotsOfItsWindow) {
+    recorded_ = record(random_video(200, {.rows = 32, .cols = 32, .planes = 1}, 1), kEverySlot);
+    PreviewDecoder reference = decoder(DecodeMethod::kLive);
+    std::vector<PreviewFrame> frames;
+    LivePreview preview(reference,
+                        {.show = [&](const PreviewFrame& made) { frames.push_back(made); },
+                         .tell = [](const Message& what) { FAIL() << what.text(); },
+                         .keep_going = [] { return true; }});
+    for (const SamplePacket& packet : recorded_.packets) {
+        preview.add({&packet, 1}, 0);
+        std::this_thread::sleep_for(std::chrono::microseconds(500));
+    }
+    preview.finish([] {});
+    ASSERT_GE(frames.size(), 1U);
+    for (std::size_t i = 0; i < frames.size(); ++i) {
+        const PreviewFrame& frame = frames[i];
+        EXPECT_EQ(frame.light, reference
+                                   .decode(reference.newest(frame.slot + 9), recorded_.packets,
+                                           [](double) { return true; })
+                                   ->light);
+        if (i > 0) {
+            EXPECT_GE(frame.slot, frames[i - 1].slot + 8);
+        }
+    }
 }
 
 TEST_F(LivePreviewTest, AFailureIsToldOnceAndCounted) {

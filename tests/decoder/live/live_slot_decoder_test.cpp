@@ -24,10 +24,12 @@ LiveSlotDecoder::Frame slot_of(const Recorded& recorded, FrameShape shape, int s
     const LiveWindow live = live_window(slot, kSlots);
     const std::span packets(recorded.packets);
     const VideoWindow window{live.begin, live.slots(), 0, 0, shape};
-    return decoder.decode(recorded.header,
-                          packets.subspan(static_cast<std::size_t>(live.begin),
-                                          static_cast<std::size_t>(live.slots())),
-                          window, slot - live.begin);
+    return decoder.decode(
+        recorded.header,
+        packets.subspan(static_cast<std::size_t>(live.begin),
+                        static_cast<std::size_t>(live.slots())),
+        window, {0, live.core_begin - live.begin, live.core_end - live.begin, live.slots()},
+        slot - live.begin);
 }
 
 void expect_slots_of_decode_live(const Recorded& recorded, const FluxVideo& video) {
