@@ -41,8 +41,10 @@ std::int64_t now_ns() {
 
 }  // namespace
 
-LivePreview::LivePreview(PreviewDecoder decoder, LivePreviewOptions options)
-    : decoder_(std::move(decoder)),
+LivePreview::LivePreview(StreamHeader header, const PreviewOptions& decoding,
+                         LivePreviewOptions options)
+    : header_(std::move(header)),
+      decoder_(header_, decoding),
       options_(std::move(options)),
       slots_(2 * index(decoder_.slots()) + 1),
       thread_([this] { run(); }) {}

@@ -37,7 +37,7 @@ struct PreviewCounts {
 /// the thread.
 class LivePreview {
   public:
-    LivePreview(PreviewDecoder decoder, LivePreviewOptions options);
+    LivePreview(StreamHeader header, const PreviewOptions& decoding, LivePreviewOptions options);
     ~LivePreview();
     LivePreview(const LivePreview&) = delete;
     LivePreview& operator=(const LivePreview&) = delete;
@@ -66,6 +66,7 @@ class LivePreview {
     Slot& free_slot();
     void hand_over();
 
+    const StreamHeader header_;
     PreviewDecoder decoder_;
     const LivePreviewOptions options_;
 
@@ -82,7 +83,7 @@ class LivePreview {
     std::vector<Slot> slots_;          ///< as many as the newest, those of the thread, and one
     std::vector<const Slot*> newest_;  ///< in their order
     std::int64_t next_slot_ = 0;
-    std::int64_t skipped_ = 0;  ///< before window_
+    std::int64_t skipped_ = 0;           ///< before window_
     std::vector<SamplePacket> packets_;  ///< of the thread: those of its window
 
     std::atomic<bool> give_up_ = false;

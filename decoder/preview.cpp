@@ -88,8 +88,8 @@ double PreviewFrame::mean_light() const {
     return std::accumulate(light.begin(), light.end(), 0.0) / static_cast<double>(light.size());
 }
 
-PreviewDecoder::PreviewDecoder(StreamHeader header, const PreviewOptions& options)
-    : header_(std::move(header)),
+PreviewDecoder::PreviewDecoder(const StreamHeader& header, const PreviewOptions& options)
+    : header_(header),
       method_(options.method),
       in_live_window_(in_live_window(header_, method_)),
       region_(region_of(header_, options)) {}

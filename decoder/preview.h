@@ -43,7 +43,8 @@ struct PreviewSlots {
 /// middle is decoded.
 class PreviewDecoder {
   public:
-    PreviewDecoder(StreamHeader header, const PreviewOptions& options);
+    /// `header` must outlive this: its schedule may take 30 MB.
+    PreviewDecoder(const StreamHeader& header, const PreviewOptions& options);
 
     /// Number of slots that a frame is decoded from, where the stream has as many.
     [[nodiscard]] int slots() const { return region_.slots; }
@@ -63,7 +64,7 @@ class PreviewDecoder {
                                                      const ProgressCallback& progress);
 
   private:
-    StreamHeader header_;
+    const StreamHeader& header_;
     DecodeMethod method_;
     bool in_live_window_;  ///< by `live`, where its window has samples of all pixels
     VideoWindow region_;   ///< of the first slots

@@ -68,7 +68,7 @@ PreviewTask task_of(py::object show, const std::string& method,
 
 ShownPreview::ShownPreview(PreviewTask task, StreamHeader header, SessionWarnings& warnings)
     : show_(std::move(task.show)),
-      preview_(PreviewDecoder(std::move(header), task.options),
+      preview_(std::move(header), task.options,
                options_of([this](const PreviewFrame& frame) { keep(frame); }, stopped_, warnings)) {
 }
 

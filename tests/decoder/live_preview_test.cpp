@@ -27,8 +27,8 @@ constexpr int kShownSlot = 6;
 
 class LivePreviewTest : public ::testing::Test {
   protected:
-    [[nodiscard]] PreviewDecoder decoder(DecodeMethod method = DecodeMethod::kNaive) const {
-        return {recorded_.header, {.method = method, .size = {}}};
+    static PreviewOptions options(DecodeMethod method = DecodeMethod::kNaive) {
+        return {.method = method, .size = {}};
     }
     /// Hands over all slots of the recording; a slot is a packet.
     void add_all(LivePreview& preview) const {
@@ -43,13 +43,14 @@ class LivePreviewTest : public ::testing::Test {
 TEST_F(LivePreviewTest, AFrameIsShownThatHasTheLightOfItsSlot) {
     std::counting_semaphore<> shown{0};
     PreviewFrame frame;
-    LivePreview preview(decoder(), {.show =
-                                        [&](const PreviewFrame& made) {
-                                            if (frame.light.empty()) frame = made;
-                                            shown.release();
-                                        },
-                                    .tell = [](const Message& what) { FAIL() << what.text(); },
-                                    .keep_going = [] { return true; }});
+    LivePreview preview(recorded_.header, options(),
+                        {.show =
+                             [&](const PreviewFrame& made) {
+                                 if (frame.light.empty()) frame = made;
+                                 shown.release();
+                             },
+                         .tell = [](const Message& what) { FAIL() << what.text(); },
+                         .keep_going = [] { return true; }});
     add_all(preview);
     shown.acquire();
     preview.finish([] {});
@@ -62,22 +63,23 @@ TEST_F(LivePreviewTest, AFrameIsShownThatHasTheLightOfItsSlot) {
 
 TEST_F(LivePreviewTest, SlotsPassByWhileAFrameIsMade) {
     std::binary_semaphore all_added{0};
-    LivePreview preview(decoder(), {.show = [&](const PreviewFrame&) { all_added.acquire(); },
-                                    .tell = [](const Message& what) { FAIL() << what.text(); },
-                                    .keep_going = [] { return true; }});
+    LivePreview preview(recorded_.header, options(),
+                        {.show = [&](const PreviewFrame&) { all_added.acquire(); },
+                         .tell = [](const Message& what) { FAIL() << what.text(); },
+                         .keep_going = [] { return true; }});
     add_all(preview);
     all_added.release();
     preview.finish([] {});
     const PreviewCounts counts = preview.counts();
     EXPECT_EQ(counts.made, 1);
     EXPECT_EQ(counts.last_slot, kShownSlot);
-    EXPECT_EQ(counts.skipped_slots,
-              static_cast<std::int64_t>(recorded_.packets.size()) - decoder().slots());
+    EXPECT_EQ(counts.skipped_slots, static_cast<std::int64_t>(recorded_.packets.size()) -
+                                        PreviewDecoder(recorded_.header, options()).slots());
 }
 
 TEST_F(LivePreviewTest, OfFewerSlotsThanAWindowThereIsOneFrame) {
     int shown = 0;
-    LivePreview preview(decoder(DecodeMethod::kLive),
+    LivePreview preview(recorded_.header, options(DecodeMethod::kLive),
                         {.show =
                              [&](const PreviewFrame& made) {
                                  EXPECT_NEAR(made.mean_light(), 0.5, 5 * 0.0245 / 32);
@@ -95,9 +97,9 @@ TEST_F(LivePreviewTest, OfFewerSlotsThanAWindowThereIsOneFrame) {
 // How many slots come until a frame is ready is not known; each frame has the bits of its slots.
 TEST_F(LivePreviewTest, AFrameOfTheMethodLiveIsDecodedFromTheSlotsOfItsWindow) {
     recorded_ = record(random_video(200, {.rows = 32, .cols = 32, .planes = 1}, 1), kEverySlot);
-    PreviewDecoder reference = decoder(DecodeMethod::kLive);
+    PreviewDecoder reference(recorded_.header, options(DecodeMethod::kLive));
     std::vector<PreviewFrame> frames;
-    LivePreview preview(reference,
+    LivePreview preview(recorded_.header, options(DecodeMethod::kLive),
                         {.show = [&](const PreviewFrame& made) { frames.push_back(made); },
                          .tell = [](const Message& what) { FAIL() << what.text(); },
                          .keep_going = [] { return true; }});
@@ -122,17 +124,18 @@ TEST_F(LivePreviewTest, AFrameOfTheMethodLiveIsDecodedFromTheSlotsOfItsWindow) {
 TEST_F(LivePreviewTest, AFailureIsToldOnceAndCounted) {
     std::counting_semaphore<> tried{0};
     int told = 0;
-    LivePreview preview(decoder(), {.show =
-                                        [&](const PreviewFrame&) {
-                                            tried.release();
-                                            throw std::runtime_error("no space");
-                                        },
-                                    .tell =
-                                        [&](const Message& what) {
-                                            EXPECT_EQ(what.text(), "no space");
-                                            ++told;
-                                        },
-                                    .keep_going = [] { return true; }});
+    LivePreview preview(recorded_.header, options(),
+                        {.show =
+                             [&](const PreviewFrame&) {
+                                 tried.release();
+                                 throw std::runtime_error("no space");
+                             },
+                         .tell =
+                             [&](const Message& what) {
+                                 EXPECT_EQ(what.text(), "no space");
+                                 ++told;
+                             },
+                         .keep_going = [] { return true; }});
     for (int made = 0; made < 2;) {
         add_all(preview);
         if (tried.try_acquire()) ++made;
