@@ -125,9 +125,8 @@ void say_slow_preview() {
 std::unique_ptr<LivePreview> open_preview(const PreviewArguments& arguments,
                                           const SensorSetup& setup) {
     if (arguments.file.empty()) return nullptr;
-    return std::make_unique<LivePreview>(
-        PreviewDecoder(stream_header_of(setup, {}), preview_options(arguments)),
-        show_in(arguments.file));
+    return std::make_unique<LivePreview>(stream_header_of(setup, {}), preview_options(arguments),
+                                         show_in(arguments.file));
 }
 
 LiveEmulatorOptions emulator_options(const LiveArguments& arguments, LivePreview* preview,

@@ -217,6 +217,12 @@ bool ExposureSchedule::operator==(const ExposureSchedule& other) const {
 std::size_t count_due(const ExposureSchedule& schedule, std::int64_t slot, int first_row, int rows,
                       int cols) {
     std::size_t count = 0;
+    if (slot + 1 >= schedule.longest_span_slots() && cols % schedule.tile_cols() == 0) {
+        const auto phase = static_cast<int>(slot % schedule.period_slots());
+        for (int row = first_row; row < first_row + rows; ++row)
+            count += schedule.due(phase, row % schedule.tile_rows()).size();
+        return count * index(cols / schedule.tile_cols());
+    }
     for (int row = first_row; row < first_row + rows; ++row)
         for_each_readout(schedule, slot, row, cols, [&](int, int) { ++count; });
     return count;

@@ -35,6 +35,10 @@ std::int64_t block_count(std::int64_t slots) {
     return slots <= 0 ? 0 : 1 + std::max<std::int64_t>(slots - kRemainderSlots - 1, 0) / kCoreSlots;
 }
 
+std::int64_t block_of(std::int64_t slot, std::int64_t slots) {
+    return std::min(slot / kCoreSlots, std::max<std::int64_t>(block_count(slots), 1) - 1);
+}
+
 std::vector<Tile> frame_tiles(FrameShape shape, std::int64_t max_core_sites) {
     std::int64_t down = 1;
     std::int64_t across = 1;

@@ -35,6 +35,9 @@ inline constexpr std::int64_t kRemainderSlots = 16;
 /// The number of blocks of a stream with `slots` slots, which are decoded independently.
 [[nodiscard]] std::int64_t block_count(std::int64_t slots);
 
+/// The block whose core has a slot of a stream with `slots` slots.
+[[nodiscard]] std::int64_t block_of(std::int64_t slot, std::int64_t slots);
+
 /// The first slot of the core of block `number`.
 [[nodiscard]] inline std::int64_t block_begin(std::int64_t number) {
     return number * kCoreSlots;

@@ -11,6 +11,7 @@
 #include <utility>
 
 #include "core/error.h"
+#include "core/index.h"
 #include "core/parallel.h"
 
 namespace stipple {
@@ -30,6 +31,9 @@ void stop_waiting_for_idle(std::thread& thread) {
 
 constexpr std::chrono::seconds kSlowEnd{2};
 
+/// Slots that come from one frame to the next, at least.
+constexpr std::int64_t kStepSlots = 8;
+
 /// CLOCK_MONOTONIC.
 std::int64_t now_ns() {
     return std::chrono::nanoseconds(std::chrono::steady_clock::now().time_since_epoch()).count();
@@ -37,31 +41,45 @@ std::int64_t now_ns() {
 
 }  // namespace
 
-LivePreview::LivePreview(PreviewDecoder decoder, LivePreviewOptions options)
-    : decoder_(std::move(decoder)), options_(std::move(options)), thread_([this] { run(); }) {}
+LivePreview::LivePreview(StreamHeader header, const PreviewOptions& decoding,
+                         LivePreviewOptions options)
+    : header_(std::move(header)),
+      decoder_(header_, decoding),
+      options_(std::move(options)),
+      slots_(2 * index(decoder_.slots()) + 1),
+      thread_([this] { run(); }) {}
 
 LivePreview::~LivePreview() {
     give_up_ = true;
     finish([] {});
 }
 
+LivePreview::Slot& LivePreview::free_slot() {
+    return *std::ranges::find_if(slots_, [&](const Slot& slot) {
+        return std::ranges::find(newest_, &slot) == newest_.end() &&
+               std::ranges::find(window_, &slot) == window_.end();
+    });
+}
+
 void LivePreview::add(std::span<const SamplePacket> packets, std::int64_t arrival_ns) {
-    const std::int64_t slot = next_slot_++;
-    if (handed_over_.load(std::memory_order_acquire)) {
-        ++skipped_;
+    if (newest_.size() == index(decoder_.slots())) newest_.erase(newest_.begin());
+    Slot& slot = free_slot();
+    slot.packet_count = packets.size();
+    slot.packets.resize(std::max(slot.packets.size(), packets.size()));
+    std::ranges::copy(packets, slot.packets.begin());
+    slot.arrival_ns = arrival_ns;
+    newest_.push_back(&slot);
+    ++next_slot_;
+    if (newest_.size() < index(decoder_.slots()) || next_slot_ < window_end_ + kStepSlots ||
+        handed_over_.load(std::memory_order_acquire))
         return;
-    }
-    if (gathered_ == 0) {
-        packet_count_ = 0;
-        first_slot_ = slot;
-    }
-    if (gathered_ == decoder_.shown_slot()) shown_arrival_ns_ = arrival_ns;
-    for (const SamplePacket& packet : packets) {
-        if (packet_count_ == packets_.size()) packets_.emplace_back();
-        packets_[packet_count_++] = packet;
-    }
-    if (++gathered_ < decoder_.slots()) return;
-    gathered_ = 0;
+    hand_over();
+}
+
+void LivePreview::hand_over() {
+    skipped_ += std::max<std::int64_t>(next_slot_ - decoder_.slots() - window_end_, 0);
+    window_ = newest_;
+    window_end_ = next_slot_;
     handed_over_.store(true, std::memory_order_release);
     wake_.release();
 }
@@ -85,13 +103,21 @@ void LivePreview::show() {
     try {
         const auto keep_going = [this](double) { return !give_up_ && options_.keep_going(); };
         if (!keep_going(0)) return;
-        const auto frame =
-            decoder_.decode(first_slot_, std::span(packets_).first(packet_count_), keep_going);
+        const PreviewSlots slots = decoder_.newest(window_end_);
+        std::size_t count = 0;
+        for (const Slot* slot : window_)
+            for (const SamplePacket& packet : std::span(slot->packets).first(slot->packet_count)) {
+                if (count == packets_.size()) packets_.emplace_back();
+                packets_[count++] = packet;
+            }
+        const auto frame = decoder_.decode(slots, std::span(packets_).first(count), keep_going);
         if (!frame) return;
         options_.show(*frame);
         ++made_;
         last_slot_ = frame->slot;
-        delays_.add(static_cast<double>(now_ns() - shown_arrival_ns_) * 1e-3);
+        delays_.add(static_cast<double>(
+                        now_ns() - window_[index(slots.shown - slots.range.begin)]->arrival_ns) *
+                    1e-3);
         failure_ = {};
     } catch (const Error& e) {
         fail(e.message());
@@ -107,6 +133,7 @@ void LivePreview::fail(const Message& failure) {
 
 void LivePreview::finish(const std::function<void()>& slow) {
     if (!thread_.joinable()) return;
+    if (window_end_ == 0 && next_slot_ > 0) hand_over();  // fewer slots than a window
     if (made_ + failed_ > 0) give_up_ = true;
     wake_.release();
     stop_waiting_for_idle(thread_);
@@ -115,7 +142,7 @@ void LivePreview::finish(const std::function<void()>& slow) {
 }
 
 PreviewCounts LivePreview::counts() const {
-    return {made_, failed_, skipped_, last_slot_, delays_};
+    return {made_, failed_, skipped_ + next_slot_ - window_end_, last_slot_, delays_};
 }
 
 }  // namespace stipple

@@ -93,6 +93,10 @@ void for_each_sensor(Sensors& measurements, const Body& body) {
                                                 std::span<const SamplePacket> packets,
                                                 const VideoWindow& window);
 
+/// The same in the memory of `result`, whose other samples it replaces.
+void collect_measurements(const StreamHeader& header, std::span<const SamplePacket> packets,
+                          const VideoWindow& window, Measurements& result);
+
 /// Removes the samples of stuck pixels, so that the prior fills them, and returns the number of
 /// these sites. A site with at least four samples is stuck if at most two of its neighbours with
 /// samples are unsound (of up to eight neighbours, at least three of them with samples), and

@@ -16,6 +16,7 @@ namespace {
 /// 2 s and 400 MB on one core, and `naive` a tenth of that.
 constexpr double kFastVoxels = 640 * 480 * 16;
 constexpr double kNaiveVoxels = 4 * kFastVoxels;
+constexpr double kLiveVoxels = 16 * kFastVoxels;
 
 /// Fewer slots give motion too little to go by.
 constexpr int kMinSlots = 12;
@@ -28,11 +29,23 @@ DecodeOptions options_of(DecodeMethod method) {
     return options;
 }
 
+/// True if each pixel has a sample in any window of `live`, the shortest of which is the first one.
+bool in_live_window(const StreamHeader& header, DecodeMethod method) {
+    return method == DecodeMethod::kLive &&
+           slots_with_a_sample(header.schedule) <= live_window(0, LiveWindow::kMaxSlots).slots();
+}
+
+double max_voxels_of(const StreamHeader& header, DecodeMethod method) {
+    if (in_live_window(header, method)) return kLiveVoxels;
+    return method == DecodeMethod::kFast ? kFastVoxels : kNaiveVoxels;
+}
+
 VideoWindow region_of(const StreamHeader& header, const PreviewOptions& options) {
     const FrameShape whole = decoded_shape(header);
     VideoWindow region{.slots = std::max(kMinSlots, 2 * header.schedule.longest_span_slots()),
                        .shape = whole};
-    const double max_voxels = options.method == DecodeMethod::kNaive ? kNaiveVoxels : kFastVoxels;
+    if (in_live_window(header, options.method)) region.slots = LiveWindow::kMaxSlots;
+    const double max_voxels = max_voxels_of(header, options.method);
     const double scale =
         std::min(1.0, std::sqrt(max_voxels / static_cast<double>(region.voxels())));
     const auto side = [&](int all, int wanted) {
@@ -75,21 +88,56 @@ double PreviewFrame::mean_light() const {
     return std::accumulate(light.begin(), light.end(), 0.0) / static_cast<double>(light.size());
 }
 
-PreviewDecoder::PreviewDecoder(StreamHeader header, const PreviewOptions& options)
-    : header_(std::move(header)), method_(options.method), region_(region_of(header_, options)) {}
+PreviewDecoder::PreviewDecoder(const StreamHeader& header, const PreviewOptions& options)
+    : header_(header),
+      method_(options.method),
+      in_live_window_(in_live_window(header_, method_)),
+      region_(region_of(header_, options)) {}
 
-std::optional<PreviewFrame> PreviewDecoder::decode(std::int64_t first_slot,
+PreviewSlots PreviewDecoder::newest(std::int64_t end) const {
+    const std::int64_t begin = std::max<std::int64_t>(end - slots(), 0);
+    if (!in_live_window_) return around(begin + slots() / 2, end);
+    const std::int64_t core_end = std::max(end - kLiveCoreSlots, begin + 1);
+    return {{begin, std::max(core_end - kLiveCoreSlots, begin), core_end, end}, core_end - 1};
+}
+
+PreviewSlots PreviewDecoder::around(std::int64_t slot, std::int64_t slots) const {
+    if (in_live_window_) {
+        const HaloRange block = slot_range(block_begin(block_of(slot, slots)), slots,
+                                           halo_slots(header_.schedule.longest_span_slots()));
+        const LiveWindow window = live_window(static_cast<int>(slot - block.begin),
+                                              static_cast<int>(block.end - block.begin));
+        return {{block.begin + window.begin, block.begin + window.core_begin,
+                 block.begin + window.core_end, block.begin + window.end},
+                slot};
+    }
+    const std::int64_t last_begin = std::max<std::int64_t>(slots - region_.slots, 0);
+    const std::int64_t begin = std::clamp<std::int64_t>(slot - region_.slots / 2, 0, last_begin);
+    return {{begin, slot, slot + 1, begin + region_.slots}, slot};
+}
+
+std::optional<PreviewFrame> PreviewDecoder::decode(const PreviewSlots& slots,
                                                    std::span<const SamplePacket> packets,
-                                                   const ProgressCallback& progress,
-                                                   std::optional<int> shown) const {
-    const int slot = shown.value_or(shown_slot());
+                                                   const ProgressCallback& progress) {
+    const auto& [range, shown] = slots;
+    const auto slot = static_cast<int>(shown - range.begin);
     VideoWindow window = region_;
-    window.first_slot = first_slot;
+    window.first_slot = range.begin;
+    window.slots = static_cast<int>(range.end - range.begin);
+    PreviewFrame frame{.slot = shown, .shape = region_.shape, .light = {}, .saturated = {}};
+    if (in_live_window_) {
+        if (!progress(0)) return std::nullopt;
+        const LiveWindow live{0, static_cast<int>(range.core_begin - range.begin),
+                              static_cast<int>(range.core_end - range.begin), window.slots};
+        const auto decoded = live_.decode(header_, packets, window, live, slot);
+        frame.light.assign(decoded.light.data().begin(), decoded.light.data().end());
+        frame.saturated.resize(region_.shape.pixels());
+        for (std::size_t site = 0; site < decoded.known.size(); ++site)
+            if (decoded.known[site] == 1) frame.saturated[site % frame.saturated.size()] = true;
+        return frame;
+    }
     Measurements measurements = collect_measurements(header_, packets, window);
-    PreviewFrame frame{.slot = first_slot + slot,
-                       .shape = region_.shape,
-                       .light = {},
-                       .saturated = saturated_pixels(measurements)};
+    frame.saturated = saturated_pixels(measurements);
     const auto video =
         decode_block(std::move(measurements), header_.calibration, options_of(method_), progress);
     if (!video) return std::nullopt;

@@ -7,7 +7,9 @@
 #include <vector>
 
 #include "core/progress.h"
+#include "decoder/block_partition.h"
 #include "decoder/decode_method.h"
+#include "decoder/live/live_slot_decoder.h"
 #include "decoder/measurements.h"
 #include "stream/sample_packet.h"
 #include "stream/stream_header.h"
@@ -25,35 +27,48 @@ struct PreviewFrame {
 };
 
 struct PreviewOptions {
-    DecodeMethod method = DecodeMethod::kNaive;  ///< or kFast
+    DecodeMethod method = DecodeMethod::kNaive;  ///< or kLive, kFast
     std::optional<FrameShape> size;              ///< rows and columns of the middle of the frame
 };
 
+/// A slot of a stream, and the slots that it is decoded from: `live` decodes it in their core.
+struct PreviewSlots {
+    HaloRange range;
+    std::int64_t shown = 0;
+};
+
 /// Decodes single frames of a stream, from the minimum number of slots that contain the exposures
-/// around them. The number of voxels is limited, so that a frame takes at most some seconds and
-/// some hundred MB: of a frame that is too large only the middle is decoded.
+/// around them; `live` from the window of its method. The number of voxels is limited, so that a
+/// frame takes at most some seconds and some hundred MB: of a frame that is too large only the
+/// middle is decoded.
 class PreviewDecoder {
   public:
-    PreviewDecoder(StreamHeader header, const PreviewOptions& options);
+    /// `header` must outlive this: its schedule may take 30 MB.
+    PreviewDecoder(const StreamHeader& header, const PreviewOptions& options);
 
-    /// Number of slots that a frame is decoded from.
+    /// Number of slots that a frame is decoded from, where the stream has as many.
     [[nodiscard]] int slots() const { return region_.slots; }
-    /// Which of these slots is shown.
-    [[nodiscard]] int shown_slot() const { return region_.slots / 2; }
     [[nodiscard]] FrameShape shape() const { return region_.shape; }
+    /// Of the last slots() slots before `end`, the one that is shown of a growing stream.
+    [[nodiscard]] PreviewSlots newest(std::int64_t end) const;
+    /// What a slot is decoded from in a stream that has `slots` slots so far; by `live` as in
+    /// `decode`.
+    [[nodiscard]] PreviewSlots around(std::int64_t slot, std::int64_t slots) const;
 
-    /// Decodes the packets of the slots() slots from `first_slot`, to the frame of slot `shown` of
-    /// these (none: shown_slot()). Returns nothing if `progress` has stopped it. \throws InputError
-    /// as collect_measurements.
-    [[nodiscard]] std::optional<PreviewFrame> decode(std::int64_t first_slot,
+    /// Decodes a slot from the packets of its slots. The method `live` has the bits of `decode` if
+    /// each site that has samples has some in the window (slots_with_a_sample), and keeps its
+    /// memory. Returns nothing if `progress` has stopped it. \throws InputError as
+    /// collect_measurements.
+    [[nodiscard]] std::optional<PreviewFrame> decode(const PreviewSlots& slots,
                                                      std::span<const SamplePacket> packets,
-                                                     const ProgressCallback& progress,
-                                                     std::optional<int> shown = {}) const;
+                                                     const ProgressCallback& progress);
 
   private:
-    StreamHeader header_;
+    const StreamHeader& header_;
     DecodeMethod method_;
-    VideoWindow region_;  ///< of the first slots
+    bool in_live_window_;  ///< by `live`, where its window has samples of all pixels
+    VideoWindow region_;   ///< of the first slots
+    LiveSlotDecoder live_;
 };
 
 }  // namespace stipple

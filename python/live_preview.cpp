@@ -51,8 +51,9 @@ PreviewTask task_of(py::object show, const std::string& method,
     constexpr int kMinSide = 8;
     if (!PyCallable_Check(show.ptr()))
         throw py::type_error("preview: give a function that takes a PreviewFrame");
-    if (method != "naive" && method != "fast")
-        throw InputError("preview_method", fmt::format("\"{}\" is none of naive, fast", method));
+    if (method != "naive" && method != "live" && method != "fast")
+        throw InputError("preview_method",
+                         fmt::format("\"{}\" is none of naive, live, fast", method));
     PreviewTask task{std::move(show), {.method = decode_method_from_name(method), .size = {}}};
     if (!size) return task;
     const auto [rows, cols] = *size;
@@ -67,7 +68,7 @@ PreviewTask task_of(py::object show, const std::string& method,
 
 ShownPreview::ShownPreview(PreviewTask task, StreamHeader header, SessionWarnings& warnings)
     : show_(std::move(task.show)),
-      preview_(PreviewDecoder(std::move(header), task.options),
+      preview_(std::move(header), task.options,
                options_of([this](const PreviewFrame& frame) { keep(frame); }, stopped_, warnings)) {
 }
 

@@ -1,8 +1,12 @@
 #include "view/slot_decoder.h"
 
+#include <sys/resource.h>
+#include <unistd.h>
+
 #include <algorithm>
 
 #include "core/error.h"
+#include "core/parallel.h"
 #include "decoder/block_partition.h"
 #include "decoder/measurements.h"
 #include "study/report/report_page.h"
@@ -12,6 +16,9 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
+/// A better picture of a running camera is decoded for who looks at a slot for so long.
+constexpr std::chrono::milliseconds kLooksFor{300};
+
 /// A viewer that has not asked for so long is gone.
 constexpr std::chrono::seconds kForgetAfter{15};
 constexpr std::size_t kMaxBytes = std::size_t{192} << 20U;
@@ -20,13 +27,14 @@ std::size_t index_of(SlotDecoder::Level level) {
     return static_cast<std::size_t>(level);
 }
 
-PreviewDecoder whole_frames(const StreamHeader& header, DecodeMethod method) {
-    return {header, {.method = method, .size = decoded_shape(header)}};
+/// The calling thread gets little of a processor that others want too.
+void yield_to_others() {
+    constexpr int kNice = 10;
+    static_cast<void>(setpriority(PRIO_PROCESS, static_cast<id_t>(gettid()), kNice));
 }
 
-/// The block in which `decode` decodes a slot of a stream with `slots` slots.
-std::int64_t block_of(std::int64_t slot, std::int64_t slots) {
-    return std::min(slot / kCoreSlots, std::max<std::int64_t>(block_count(slots), 1) - 1);
+PreviewDecoder whole_frames(const StreamHeader& header, DecodeMethod method) {
+    return {header, {.method = method, .size = decoded_shape(header)}};
 }
 
 }  // namespace
@@ -36,7 +44,7 @@ SlotDecoder::SlotDecoder(ViewedStream& stream, const std::filesystem::path& file
     : stream_(stream),
       method_(setup.options.method),
       options_(setup.options),
-      naive_(whole_frames(stream.header(), DecodeMethod::kNaive)),
+      live_(whole_frames(stream.header(), DecodeMethod::kLive)),
       fast_(whole_frames(stream.header(), DecodeMethod::kFast)),
       session_(std::in_place, file, setup, calibration) {
     options_.fill_gaps = true;
@@ -47,13 +55,13 @@ SlotDecoder::SlotDecoder(ViewedStream& stream, const std::filesystem::path& file
 SlotDecoder::SlotDecoder(ViewedStream& stream)
     : stream_(stream),
       method_(DecodeMethod::kFast),
-      naive_(whole_frames(stream.header(), DecodeMethod::kNaive)),
+      live_(whole_frames(stream.header(), DecodeMethod::kLive)),
       fast_(whole_frames(stream.header(), DecodeMethod::kFast)) {
     start();
 }
 
 void SlotDecoder::start() {
-    threads_[0] = std::thread([this] { run(Level::kNaive); });
+    threads_[0] = std::thread([this] { run(Level::kLive); });
     threads_[1] = std::thread([this] { run(Level::kFast); });
 }
 
@@ -73,8 +81,8 @@ std::string_view SlotDecoder::name_of(Level level) const {
     switch (level) {
         case Level::kNone:
             return "";
-        case Level::kNaive:
-            return named(DecodeMethod::kNaive).name;
+        case Level::kLive:
+            return named(DecodeMethod::kLive).name;
         case Level::kFast:
             return named(DecodeMethod::kFast).name;
         case Level::kBlock:
@@ -86,7 +94,7 @@ std::string_view SlotDecoder::name_of(Level level) const {
 SlotDecoder::Picture SlotDecoder::best_of(std::int64_t slot) const {
     const auto found = pictures_.find(slot);
     if (found == pictures_.end()) return {};
-    for (const Level level : {Level::kBlock, Level::kFast, Level::kNaive})
+    for (const Level level : {Level::kBlock, Level::kFast, Level::kLive})
         if (const Codes& codes = found->second[index_of(level)]) return {level, codes};
     return {};
 }
@@ -143,6 +151,7 @@ std::optional<SlotDecoder::Task> SlotDecoder::next_task(Level level) {
     for (const auto& [viewer, wish] : wishes_) {
         const Level there = best_of(wish.slot).level;
         if (there >= level || failures_.contains(wish.slot)) continue;
+        if (on_camera() && level > Level::kLive && Clock::now() - wish.asked < kLooksFor) continue;
         if (level == Level::kBlock && (there < Level::kFast || !whole_block(wish.slot))) continue;
         if (next && wish.asked < asked) continue;
         next = {wish.slot, level};
@@ -151,29 +160,39 @@ std::optional<SlotDecoder::Task> SlotDecoder::next_task(Level level) {
     return next;
 }
 
-bool SlotDecoder::wanted(const Task& task) {
-    const std::lock_guard lock(mutex_);
-    if (ended_) return false;
-    return std::ranges::any_of(wishes_, [&](const auto& wish) {
+bool SlotDecoder::first_wanted() {
+    return next_task(Level::kLive).has_value();
+}
+
+bool SlotDecoder::wanted(const Task& task) const {
+    return !ended_ && std::ranges::any_of(wishes_, [&](const auto& wish) {
         return wish.second.slot == task.slot ||
                (task.level == Level::kBlock &&
                 wish.second.slot / kCoreSlots == task.slot / kCoreSlots);
     });
 }
 
+bool SlotDecoder::goes_on(const Task& task) {
+    std::unique_lock lock(mutex_);
+    if (task.level > Level::kLive)
+        changed_.wait(lock, [&] { return !wanted(task) || !first_wanted(); });
+    return wanted(task);
+}
+
 void SlotDecoder::run(Level level) {
+    if (level > Level::kLive || on_camera()) yield_to_others();
     while (!ended_) {
         std::optional<Task> task;
         {
             std::unique_lock lock(mutex_);
-            task = next_task(level);
+            if (level == Level::kLive || !first_wanted()) task = next_task(level);
             if (!task) {
                 changed_.wait_for(lock, std::chrono::seconds(1));
                 continue;
             }
         }
         try {
-            work(*task);
+            on_camera() ? run_on_this_thread([&] { work(*task); }) : work(*task);
         } catch (const std::exception& e) {
             const std::lock_guard lock(mutex_);
             failures_[task->slot] = e.what();
@@ -190,13 +209,10 @@ void SlotDecoder::work(const Task& task) {
 }
 
 void SlotDecoder::decode_slot(const Task& task) {
-    const PreviewDecoder& decoder = task.level == Level::kNaive ? naive_ : fast_;
-    const std::int64_t last_first = std::max<std::int64_t>(stream_.slots() - decoder.slots(), 0);
-    const std::int64_t first =
-        std::clamp<std::int64_t>(task.slot - decoder.shown_slot(), 0, last_first);
-    const auto packets = stream_.packets(first, first + decoder.slots());
-    const auto frame = decoder.decode(
-        first, packets, [&](double) { return wanted(task); }, static_cast<int>(task.slot - first));
+    PreviewDecoder& decoder = task.level == Level::kLive ? live_ : fast_;
+    const PreviewSlots slots = decoder.around(task.slot, stream_.slots());
+    const auto packets = stream_.packets(slots.range.begin, slots.range.end);
+    const auto frame = decoder.decode(slots, packets, [&](double) { return goes_on(task); });
     if (frame) store(task.slot, task.level, frame->light);
 }
 
@@ -215,7 +231,7 @@ void SlotDecoder::decode_block_of(std::int64_t slot) {
             store(at, Level::kBlock, light);
             return at + 1 < end;
         },
-        [&](double) { return wanted(task); });
+        [&](double) { return goes_on(task); });
 }
 
 void SlotDecoder::store(std::int64_t slot, Level level, std::span<const float> light) {

@@ -23,19 +23,19 @@
 
 namespace stipple {
 
-/// The pictures of a decoded stream, where they are looked at: one of a few slots at once (`naive`,
+/// The pictures of a decoded stream, where they are looked at: one of a few slots at once (`live`,
 /// then `fast`, of the slots around), and behind it the whole block of `decode`, whose pictures
 /// have its bits. A thread for each level decodes what was asked for last, and drops what nobody
-/// waits for.
+/// waits for. The better ones stop while a first picture is made.
 class SlotDecoder {
   public:
     /// How good a picture is; each is better than those before.
-    enum class Level { kNone, kNaive, kFast, kBlock };
+    enum class Level { kNone, kLive, kFast, kBlock };
 
     /// `stream` must outlive this; `file` is its file. \throws InputError as DecodeSession.
     SlotDecoder(ViewedStream& stream, const std::filesystem::path& file, const DecodeSetup& setup,
                 const CalibrationChoice& calibration);
-    /// Of a camera: there are no blocks.
+    /// Of a running camera: without blocks, and with little of the processor, on one core.
     explicit SlotDecoder(ViewedStream& stream);
     ~SlotDecoder();
     SlotDecoder(const SlotDecoder&) = delete;
@@ -55,7 +55,7 @@ class SlotDecoder {
     void end();
     /// What is there of a slot.
     [[nodiscard]] Picture known(std::int64_t slot) const;
-    /// "naive", "fast", or the method of blocks.
+    /// "live", "fast", or the method of blocks.
     [[nodiscard]] std::string_view name_of(Level level) const;
 
   private:
@@ -77,16 +77,20 @@ class SlotDecoder {
     void work(const Task& task);
     void decode_slot(const Task& task);
     void decode_block_of(std::int64_t slot);
+    [[nodiscard]] bool on_camera() const { return !session_; }
     void start();
     [[nodiscard]] std::optional<Task> next_task(Level level);
-    [[nodiscard]] bool wanted(const Task& task);
+    [[nodiscard]] bool first_wanted();
+    [[nodiscard]] bool wanted(const Task& task) const;
+    /// Waits while a first picture is made, unless the task is one. False if nobody waits for it.
+    [[nodiscard]] bool goes_on(const Task& task);
     void store(std::int64_t slot, Level level, std::span<const float> light);
     [[nodiscard]] Picture best_of(std::int64_t slot) const;
 
     ViewedStream& stream_;
     DecodeMethod method_;
     DecodeOptions options_;
-    PreviewDecoder naive_;
+    PreviewDecoder live_;
     PreviewDecoder fast_;
     std::optional<DecodeSession> session_;  ///< of the blocks
 

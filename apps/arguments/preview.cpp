@@ -16,11 +16,12 @@ void add_preview_arguments(Command& command, PreviewArguments& arguments) {
         .type_name("FILE")
         .output(kPreviewName);
     command
-        .add_option("--preview-method", arguments.method,
-                    "decoding method of the preview: naive, or fast, which is better and takes "
-                    "seconds")
+        .add_option(
+            "--preview-method", arguments.method,
+            "decoding method of the preview: naive, live, or fast, which is better and takes "
+            "seconds")
         .shows_default()
-        .one_of({"fast", "naive"})
+        .one_of({"fast", "live", "naive"})
         .type_name("NAME");
     command
         .add_parsed(

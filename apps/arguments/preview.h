@@ -11,7 +11,7 @@ namespace stipple {
 /// The preview of `stipple capture live`.
 struct PreviewArguments {
     std::string file;                ///< .png or .npy; empty: none
-    std::string method = "naive";    ///< or "fast"
+    std::string method = "live";     ///< or "naive", "fast"
     std::optional<FrameShape> size;  ///< rows and columns of the middle of the frame
 };
 

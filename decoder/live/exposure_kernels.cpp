@@ -239,9 +239,10 @@ void restore_chain(const WindowRun& run, const float* light, float* result) {
         spread<kChain, false>(s, {ending[slot - window.begin], current}, moves);
         if (slot >= window.core_end) continue;
         const float* HWY_RESTRICT x = light + window_voxel(run, slot);
-        float* HWY_RESTRICT to = result +
-                                 static_cast<std::size_t>(slot) * run.measurements.shape.sites() +
-                                 run.sites.begin;
+        float* HWY_RESTRICT to =
+            result +
+            static_cast<std::size_t>(slot - window.core_begin) * run.measurements.shape.sites() +
+            run.sites.begin;
         for (std::size_t i = 0; i < s.sites; ++i) {
             const float step = kWeighted ? s.weight[i] * step_of(x[i]) : step_of(x[i]);
             to[i] = (kChain == Chain::kSecond ? to[i] : x[i]) + step * moves[i];
@@ -263,8 +264,10 @@ void average_run(const WindowRun& run, float* light, std::uint8_t* known) {
     });
     average_samples(samples, window.slots(), run.measurements.shape.sites(),
                     {light + range.begin, light + range.end});
-    for (std::size_t i = range.begin; i < range.end; ++i)
-        known[i] = samples.exposed[i - range.begin] > 0 ? 1 : 0;
+    for (std::size_t i = range.begin; i < range.end; ++i) {
+        const std::size_t site = i - range.begin;
+        known[i] = samples.usable[site] > 0 ? 2 : samples.exposed[site] > 0 ? 1 : 0;
+    }
 }
 
 void spread_run(const WindowRun& run, const WindowSlots& slots, const float* light,

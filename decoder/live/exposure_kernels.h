@@ -47,8 +47,9 @@ struct SpreadResiduals {
 /// distance of a slot from its last one. l is exp(-1 / 16) where 80 % of the exposed slots are in
 /// such exposures, and falls linearly with this fraction, to exp(-1 / 1.5) at 0. If all exposures
 /// are saturated, the mean is their highest bound. It is not negative. `known` has a value per
-/// site: 0 if the window has no sample of it; then the light is 0. The same bits for any SIMD
-/// target, as of the functions below. Precondition of all: window.slots() <= LiveWindow::kMaxSlots.
+/// site: 0 if the window has no sample of it (then the light is 0), 1 if all are saturated, else 2.
+/// The same bits for any SIMD target, as of the functions below. Precondition of all:
+/// window.slots() <= LiveWindow::kMaxSlots.
 void average_in_time(const WindowRun& run, std::span<float> light,
                      std::span<std::uint8_t> known) noexcept;
 
@@ -61,8 +62,8 @@ void spread_residuals(const WindowRun& run, const WindowSlots& slots, std::span<
 
 /// The core of a window: the light after a step of data consistency (data_prox.h), with step sizes
 /// proportional to the light and shrunk by r^2 / (r^2 + 3 var), r = y - A x: where the sample
-/// agrees within its noise, the light stays. `result` is the whole block, order (slot, plane, row,
-/// col).
+/// agrees within its noise, the light stays. `result` has the slots of the core, order (slot,
+/// plane, row, col).
 void restore_sums(const WindowRun& run, std::span<const float> light,
                   std::span<float> result) noexcept;
 

@@ -25,6 +25,7 @@ constexpr float kNear = 0.244201342F;
 constexpr float kFar = 0.0544886845F;
 constexpr float kSquares1d = kCentre * kCentre + 2 * kNear * kNear + 2 * kFar * kFar;
 constexpr float kShrink = 3 * kSquares1d * kSquares1d;  // three variances
+constexpr float kMinFraction = 0.5F;                    // of the light, after a step
 constexpr float kTiny = 1e-6F;                          // of precision, where there is no sample
 
 /// `padded` has two more floats on each side of `cols`.
@@ -50,7 +51,8 @@ void shrink_row(std::size_t cols, const float* const* precision, const float* co
 }
 
 void add_row(std::size_t cols, const float* HWY_RESTRICT update, float* HWY_RESTRICT light) {
-    for (std::size_t i = 0; i < cols; ++i) light[i] = std::max(light[i] + update[i], 0.0F);
+    for (std::size_t i = 0; i < cols; ++i)
+        light[i] = std::max(light[i] + update[i], kMinFraction * light[i]);
 }
 
 /// Sums over pairs of columns of two rows; the last pair may be half a one.

@@ -194,7 +194,7 @@ def live(
     queue: int = 64,
     late_after: float = 2,
     preview: Optional[Callable[[PreviewFrame], object]] = None,
-    preview_method: str = "naive",
+    preview_method: str = "live",
     preview_size: Optional[Tuple[int, int]] = None,
     threads: int = 0,
     force: bool = False,
@@ -216,7 +216,7 @@ def live(
         shown. The call is made between two frames of the camera, in the thread that has called `live`: if it
         takes longer than `queue` frames, frames are dropped and counted. What it raises ends the call; the
         stream holds all slots until then. If no frame was ready by the end, the first one is waited for.
-    preview_method: "naive", or "fast", which is better and takes seconds.
+    preview_method: "live", "naive", or "fast", which is better and takes seconds.
     preview_size: (rows, columns), 8 to 65535, of the middle of the frame; by default as much as is decoded within
         some seconds.
 

@@ -58,15 +58,23 @@ class LiveTest(ProgramTest):
 
 class PreviewTest(LiveTest):
     def test_it_is_the_frame_that_decode_makes_of_these_slots(self):
-        self.write_array("light.npy", moving_light(WINDOW))
-        for method, decode in (("fast", PREVIEW_OF_FAST), ("naive", ("--method", "naive"))):
+        for method, decode, slots, shown in (("fast", PREVIEW_OF_FAST, WINDOW, WINDOW // 2),
+                                             ("naive", ("--method", "naive"), WINDOW, WINDOW // 2),
+                                             ("live", ("--method", "live"), 24, 15)):
+            self.write_array("light.npy", moving_light(slots))
             preview = self.live("light.npy", *FAST, "--preview", "now.npy", "--preview-method",
                                 method)["preview"]
             self.assertEqual((preview["made"], preview["slots"], preview["last_slot"]),
-                             (1, WINDOW, WINDOW // 2))
+                             (1, slots, shown))
             self.succeed("decode", "clip.stipple", "-o", "all.npy", "--force", *decode)
             np.testing.assert_array_equal(self.array("now.npy")[0],
-                                          self.array("all.npy")[WINDOW // 2])
+                                          self.array("all.npy")[shown])
+
+    def test_of_fewer_slots_than_a_window_there_is_one(self):
+        self.write_array("light.npy", moving_light(9))
+        preview = self.live("light.npy", *FAST, "--preview", "now.npy")["preview"]
+        self.assertEqual((preview["made"], preview["skipped_slots"]), (1, 0))
+        self.assertAlmostEqual(self.array("now.npy").mean(), 0.5, delta=0.1)
 
     def test_the_middle_alone_is_the_middle_of_the_whole(self):
         self.write_array("light.npy", moving_light(WINDOW))

@@ -312,7 +312,7 @@ class PreviewTest(LiveSourceTest):
         self.write_dn()
         with self.assertRaisesRegex(TypeError, "preview: give a function"):
             self.live(preview=5)
-        for message, arguments in {'preview_method: "best" is none of naive, fast': {"preview_method": "best"},
+        for message, arguments in {'preview_method: "best" is none of naive, live, fast': {"preview_method": "best"},
                                    r"preview_size: \(4, 8\) is outside 8..65535": {"preview_size": (4, 8)}}.items():
             with self.subTest(message), self.assertRaisesRegex(ValueError, message):
                 self.live(preview=print, **arguments)

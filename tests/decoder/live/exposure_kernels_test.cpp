@@ -73,7 +73,7 @@ TEST(AverageInTimeTest, OmitsExposuresThatBeginBeforeTheWindow) {
     average_in_time({m, {.begin = 2, .core_begin = 4, .core_end = 6, .end = 8}, {0, 1}}, light,
                     known);
     EXPECT_EQ(light, std::vector<float>(6, 1));
-    EXPECT_EQ(known[0], 1);
+    EXPECT_EQ(known[0], 2);
     average_in_time({m, {.begin = 2, .core_begin = 2, .core_end = 4, .end = 4}, {0, 1}}, light,
                     known);
     EXPECT_EQ(known[0], 0);
