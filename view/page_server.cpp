@@ -20,6 +20,7 @@ namespace {
 constexpr std::size_t kThreads = 64;
 constexpr std::size_t kMaxBody = 64 * 1024;
 constexpr int kWaitSeconds = 5;
+constexpr int kKeepAliveSeconds = 1;  // for so long the server may take to end
 
 std::string random_token() {
     std::array<unsigned char, 16> bytes{};
@@ -72,7 +73,7 @@ struct PageServer::Impl {
         server.set_payload_max_length(kMaxBody);
         server.set_read_timeout(kWaitSeconds);
         server.set_write_timeout(kWaitSeconds);
-        server.set_keep_alive_timeout(kWaitSeconds);
+        server.set_keep_alive_timeout(kKeepAliveSeconds);
         server.set_tcp_nodelay(true);
         server.set_socket_options(set_socket_options);
         const auto take = [this](const httplib::Request& request, httplib::Response& response) {

@@ -19,6 +19,9 @@ using Clock = std::chrono::steady_clock;
 /// A better picture of a running camera is decoded for who looks at a slot for so long.
 constexpr std::chrono::milliseconds kLooksFor{300};
 
+/// So few cores are for the emulation alone, but one.
+constexpr int kFewCores = 3;
+
 /// A viewer that has not asked for so long is gone.
 constexpr std::chrono::seconds kForgetAfter{15};
 constexpr std::size_t kMaxBytes = std::size_t{192} << 20U;
@@ -192,7 +195,8 @@ void SlotDecoder::run(Level level) {
             }
         }
         try {
-            on_camera() ? run_on_this_thread([&] { work(*task); }) : work(*task);
+            const bool spares_cores = on_camera() && thread_count() <= kFewCores;
+            spares_cores ? run_on_this_thread([&] { work(*task); }) : work(*task);
         } catch (const std::exception& e) {
             const std::lock_guard lock(mutex_);
             failures_[task->slot] = e.what();

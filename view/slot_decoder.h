@@ -35,7 +35,7 @@ class SlotDecoder {
     /// `stream` must outlive this; `file` is its file. \throws InputError as DecodeSession.
     SlotDecoder(ViewedStream& stream, const std::filesystem::path& file, const DecodeSetup& setup,
                 const CalibrationChoice& calibration);
-    /// Of a running camera: without blocks, and with little of the processor, on one core.
+    /// Of a running camera: without blocks, and with what the emulation leaves of the processor.
     explicit SlotDecoder(ViewedStream& stream);
     ~SlotDecoder();
     SlotDecoder(const SlotDecoder&) = delete;

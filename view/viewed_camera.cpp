@@ -137,9 +137,7 @@ void ViewedCamera::take(SessionEvent event) {
 void ViewedCamera::take(CapturedFrame frame) {
     if (!ready_) return session_.give_back(std::move(frame.payload));
     const FrameRecord& record = frame.record;
-    if (record.lost_before > 0)
-        events_.add(fmt::format("{} lost before frame {}: {}", record.lost_before, record.id,
-                                name_in(kGapCauses, record.cause)));
+    if (record.lost_before > 0) events_.add(loss_text(record));
     {
         const std::lock_guard lock(mutex_);
         rate_.add(record);

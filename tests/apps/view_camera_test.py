@@ -3,10 +3,12 @@ them, recordings and features, and a camera that goes away."""
 
 import json
 import os
+import socket
 import subprocess
 import threading
 import time
 import unittest
+from concurrent.futures import ThreadPoolExecutor
 
 import numpy as np
 from capture_record_test import records_of
@@ -113,6 +115,31 @@ class ViewCameraTest(ServedCamera):
             self.assertEqual(record["id"], before["id"] + 1 + record["lost_before"])
         known = self.figures("info", file)
         self.assertEqual(known["frames"], len(records))
+
+    def test_ten_pages_and_one_that_stands_still_do_not_hold_a_recording_up(self):
+        self.serve()
+        viewer = self.view()
+        stalled = socket.create_connection(("127.0.0.1", viewer.port))
+        self.addCleanup(stalled.close)
+        stalled.setsockopt(socket.SOL_SOCKET, socket.SO_RCVBUF, 4096)
+        request = f"GET {viewer.path}?x HTTP/1.1\r\nHost: 127.0.0.1:{viewer.port}\r\n\r\n".encode()
+        stalled.sendall(request * 10)  # and never reads
+        self.act(viewer, "record")
+
+        def look(number):
+            shown = 0
+            for _ in range(20):
+                slots = viewer.json("status")["slots"]
+                for video in (0, 1):
+                    shown += viewer.picture(video, slots - 1, viewer=number, wait=2000)[1].size > 0
+            return shown
+        with ThreadPoolExecutor(10) as pages:
+            self.assertTrue(all(shown > 0 for shown in pages.map(look, range(10))))
+        self.act(viewer, "stop")
+        self.until(lambda: any(".strec" in event["text"] for event in viewer.json("camera")["events"]))
+        self.assertEqual(viewer.json("camera")["lost"]["queue_drop"], 0)
+        [file] = self.folder.glob("*.strec")
+        self.assertEqual(self.figures("info", file)["frames"], len(records_of(file)))
 
     def test_a_recording_under_way_is_kept_at_the_end(self):
         self.serve()

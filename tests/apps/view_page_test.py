@@ -19,6 +19,7 @@ class ViewPageTest(BrowserTest):
         self.succeed("emulate", "scene.npy", "-o", "clip.stipple", "--sensor", "lux1310", "--luminance")
         self.viewer = Viewer(self, "clip.stipple", "--truth", "scene.npy", "--luminance", "--method", "fast")
         self.browser.get(self.viewer.url)
+        self.addCleanup(self.browser.get, "about:blank")  # before its server ends
         self.wait(lambda: self.script("return document.documentElement.dataset.ready === 'true'"))
 
     def press(self, *keys):
