@@ -44,11 +44,29 @@ std::vector<float> coloured(std::span<const float> mosaic, FrameShape shape, Col
     return light;
 }
 
+FrameLayout with_rows(FrameLayout layout, int rows) {
+    layout.height = rows;
+    return layout;
+}
+
+/// light_code of a frame, coloured if `planes` are more than it has.
+std::vector<std::uint16_t> codes_of(std::span<const std::uint8_t> payload, int planes,
+                                    FrameLight& to_light) {
+    std::vector<float> light(to_light.shape().sites());
+    to_light.convert(payload, light);
+    if (planes > to_light.shape().planes)
+        light = coloured(light, to_light.shape(), to_light.filter());
+    return light_codes(light);
+}
+
 }  // namespace
 
 RecentSlots::RecentSlots(const FrameLayout& layout, double black_level_dn, StreamHeader header)
     : header_(std::move(header)),
+      layout_(layout),
+      cell_rows_(std::min(layout.height, 2)),
       to_light_(layout, black_level_dn),
+      cells_to_light_(with_rows(layout, cell_rows_), black_level_dn),
       most_(slots_to_keep(layout, header_)) {}
 
 void RecentSlots::add(std::span<const std::uint8_t> payload, std::span<const SamplePacket> packets,
@@ -97,20 +115,32 @@ void RecentSlots::visit(std::int64_t first, std::int64_t end,
         for (const SamplePacket& packet : find(at)->packets) take(packet);
 }
 
+std::vector<std::uint8_t> RecentSlots::payload(std::int64_t slot, std::size_t first,
+                                               std::size_t bytes) const {
+    const std::lock_guard lock(mutex_);
+    const Slot* const found = find(slot);
+    if (found == nullptr) return {};
+    const auto all = std::span(found->payload).subspan(std::min(first, found->payload.size()));
+    const auto part = all.first(std::min(bytes, all.size()));
+    return {part.begin(), part.end()};
+}
+
 std::vector<std::uint16_t> RecentSlots::codes(std::int64_t slot) {
-    std::vector<std::uint8_t> payload;
-    {
-        const std::lock_guard lock(mutex_);
-        const Slot* const found = find(slot);
-        if (found == nullptr) return {};
-        payload = found->payload;
-    }
+    const auto frame = payload(slot, 0, layout_.payload_bytes());
+    if (frame.empty()) return {};
     const std::lock_guard lock(light_mutex_);
-    std::vector<float> light(to_light_.shape().sites());
-    to_light_.convert(payload, light);
-    if (decoded_shape(header_).planes > to_light_.shape().planes)
-        light = coloured(light, to_light_.shape(), to_light_.filter());
-    return light_codes(light);
+    return codes_of(frame, decoded_shape(header_).planes, to_light_);
+}
+
+std::optional<std::uint16_t> RecentSlots::code(std::int64_t slot, int plane, int row, int col) {
+    const int first_row = std::max(std::min(row / 2 * 2, layout_.height - 2), 0);
+    const auto cells = payload(slot, index(first_row) * layout_.stride_bytes,
+                               index(cell_rows_) * layout_.stride_bytes);
+    if (cells.empty()) return {};
+    const std::lock_guard lock(light_mutex_);
+    const auto codes = codes_of(cells, decoded_shape(header_).planes, cells_to_light_);
+    const FrameShape shape = cells_to_light_.shape();
+    return codes[index(plane) * shape.pixels() + row_major(row - first_row, col, shape.cols)];
 }
 
 std::int64_t RecentSlots::arrival_ns(std::int64_t slot) const {

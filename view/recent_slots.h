@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <deque>
 #include <mutex>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -33,6 +34,8 @@ class RecentSlots {
     /// light_code of a frame, order (plane, row, col) of decoded_shape; empty if it is not there.
     /// Each pixel of a mosaic has the colours of its cell of 2 x 2 pixels.
     [[nodiscard]] std::vector<std::uint16_t> codes(std::int64_t slot);
+    /// The same of one pixel; nothing if it is not there.
+    [[nodiscard]] std::optional<std::uint16_t> code(std::int64_t slot, int plane, int row, int col);
     /// When the frame of a slot came (CLOCK_MONOTONIC); 0 if it is not there.
     [[nodiscard]] std::int64_t arrival_ns(std::int64_t slot) const;
 
@@ -42,12 +45,18 @@ class RecentSlots {
         std::vector<SamplePacket> packets;
         std::int64_t arrival_ns = 0;
     };
+    /// The first `bytes` of a frame from byte `first` on; empty if it is not there.
+    [[nodiscard]] std::vector<std::uint8_t> payload(std::int64_t slot, std::size_t first,
+                                                    std::size_t bytes) const;
     /// Null if it is not there. Precondition: the lock is held.
     [[nodiscard]] const Slot* find(std::int64_t slot) const;
 
     StreamHeader header_;
+    FrameLayout layout_;
+    int cell_rows_;  ///< that determine the colours of a pixel
     std::mutex light_mutex_;
     FrameLight to_light_;
+    FrameLight cells_to_light_;  ///< of cell_rows_ rows
     mutable std::mutex mutex_;
     std::deque<Slot> slots_;
     std::size_t most_ = 0;  ///< slots that are kept

@@ -100,8 +100,13 @@ void ViewPage::add_camera(CameraView& camera) {
     RecentSlots& recent = camera.recent();
     title_ = camera.name();
     shape_ = decoded_shape(recent.header());
-    videos_.push_back({"camera", camera.address(), {}, nullptr, [&recent](std::int64_t slot) {
-                           return recent.codes(slot);
+    videos_.push_back({"camera",
+                       camera.address(),
+                       {},
+                       nullptr,
+                       [&recent](std::int64_t slot) { return recent.codes(slot); },
+                       [&recent](std::int64_t slot, int plane, int row, int col) {
+                           return recent.code(slot, plane, row, col);
                        }});
     ViewedStream& stream =
         streams_.emplace_back(std::make_unique<RecentPackets>(recent), "emulated");
@@ -112,8 +117,13 @@ void ViewPage::add_camera(CameraView& camera) {
 void ViewPage::add_footage(const std::filesystem::path& source, const ViewOptions& options) {
     ViewedVideo& video = footage_.emplace_back(source, options.footage, options.warn);
     require_shape(video.shape(), source);
-    videos_.push_back({video.name(), source.string(), {}, nullptr, [&video](std::int64_t slot) {
-                           return video.codes(slot);
+    videos_.push_back({video.name(),
+                       source.string(),
+                       {},
+                       nullptr,
+                       [&video](std::int64_t slot) { return video.codes(slot); },
+                       [&video](std::int64_t slot, int plane, int row, int col) {
+                           return video.code(slot, plane, row, col);
                        }});
 }
 
@@ -269,17 +279,16 @@ std::optional<PageAnswer> ViewPage::light(const PageRequest& request) {
     const auto pixel = pixel_question(request, shape_, slots());
     if (!pixel || number < 0 || number >= static_cast<std::int64_t>(videos_.size())) return {};
     const Video& video = videos_[static_cast<std::size_t>(number)];
-    const std::size_t at =
-        index(pixel->plane) * shape_.pixels() + row_major(pixel->row, pixel->col, shape_.cols);
+    const auto code_in = [&](std::int64_t slot) -> std::optional<std::uint16_t> {
+        if (video.code) return video.code(slot, pixel->plane, pixel->row, pixel->col);
+        const auto codes = video.decoder->known(slot).codes;
+        if (!codes) return {};
+        return (*codes)[index(pixel->plane) * shape_.pixels() +
+                        row_major(pixel->row, pixel->col, shape_.cols)];
+    };
     ordered_json list = ordered_json::array();
-    for (std::int64_t slot = pixel->first; slot < pixel->end; ++slot) {
-        if (video.codes) {
-            if (const auto codes = video.codes(slot); !codes.empty())
-                list.push_back({slot, codes[at]});
-        } else if (const auto known = video.decoder->known(slot); known.codes) {
-            list.push_back({slot, (*known.codes)[at]});
-        }
-    }
+    for (std::int64_t slot = pixel->first; slot < pixel->end; ++slot)
+        if (const auto code = code_in(slot)) list.push_back({slot, *code});
     return json_answer(list);
 }
 

@@ -73,7 +73,10 @@ class ViewPage {
         std::string text;
         std::optional<std::size_t> run;  ///< decoded from it
         SlotDecoder* decoder = nullptr;
-        std::function<std::vector<std::uint16_t>(std::int64_t slot)> codes = {};  ///< no decoder
+        /// Without a decoder: light_code of a slot, and of one of its pixels.
+        std::function<std::vector<std::uint16_t>(std::int64_t slot)> codes = {};
+        std::function<std::optional<std::uint16_t>(std::int64_t slot, int plane, int row, int col)>
+            code = {};
     };
     void add_camera(CameraView& camera);
     void add_stream(const std::filesystem::path& file, const ViewOptions& options);

@@ -18,6 +18,17 @@ PixelArea whole(FrameShape shape) {
     return {.first_row = 0, .first_col = 0, .rows = shape.rows, .cols = shape.cols};
 }
 
+/// Whether an exposure of the pixel ends in a slot.
+bool is_due(const ExposureSchedule& schedule, int row, int col, std::int64_t slot) {
+    const int period = schedule.period_slots();
+    return std::ranges::any_of(
+        schedule.exposures(row % schedule.tile_rows(), col % schedule.tile_cols()),
+        [&](const Exposure& exposure) {
+            const std::int64_t last = std::int64_t{exposure.first_slot} + exposure.span_slots() - 1;
+            return slot % period == last % period;
+        });
+}
+
 }  // namespace
 
 ViewedStream::ViewedStream(std::unique_ptr<PacketSource> source, std::string name)
@@ -85,6 +96,7 @@ ordered_json ViewedStream::samples_of_pixel(int row, int col, std::int64_t first
     const std::size_t pixel = row_major(row, col, shape.cols);
     ordered_json list = ordered_json::array();
     for (std::int64_t slot = first; slot < end; ++slot) {
+        if (!is_due(header().schedule, row, col, slot)) continue;
         const Samples at = read_samples(slot);
         if (at.kinds[pixel] == 0) continue;
         const auto before = static_cast<std::size_t>(

@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "core/error.h"
+#include "core/index.h"
 #include "study/report/report_page.h"
 
 namespace stipple {
@@ -43,6 +44,12 @@ std::vector<std::uint16_t> ViewedVideo::codes(std::int64_t slot) {
     const auto frame = reader_->next();
     next_ = slot + 1;
     return light_codes(frame);
+}
+
+std::optional<std::uint16_t> ViewedVideo::code(std::int64_t slot, int plane, int row, int col) {
+    const auto all = codes(slot);
+    if (all.empty()) return {};
+    return all[index(plane) * shape_.pixels() + row_major(row, col, shape_.cols)];
 }
 
 }  // namespace stipple

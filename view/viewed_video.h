@@ -29,6 +29,8 @@ class ViewedVideo {
     /// light_code of a frame, order (plane, row, col); empty beyond the end. \throws InputError as
     /// ReadAhead.
     [[nodiscard]] std::vector<std::uint16_t> codes(std::int64_t slot);
+    /// The same of one pixel; nothing beyond the end.
+    [[nodiscard]] std::optional<std::uint16_t> code(std::int64_t slot, int plane, int row, int col);
 
   private:
     void open();

@@ -70,6 +70,10 @@ class ViewCameraTest(ServedCamera):
         distance = [np.abs(light_of(codes) / frame.ravel() - 1).max() for frame in self.light]
         self.assertLess(min(distance), 0.003)  # of a code
         self.assertEqual(viewer.ask(f"plane/v0-{status['slots'] + 1000}")[2], b"")
+        slot = status["slots"] - 1
+        for row, col in ((0, 0), (31, 17), (ROWS - 1, COLS - 1)):
+            [[told, code]] = viewer.json("light", video=0, row=row, col=col, plane=0, first=slot, end=slot + 1)
+            self.assertEqual((told, code), (slot, codes.reshape(ROWS, COLS)[row, col]))
 
     def test_samples_are_those_of_emulate(self):
         """Of a scene that does not move: there each frame of the camera is that of the footage."""

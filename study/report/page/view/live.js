@@ -41,7 +41,10 @@ async function followCamera() {
     Object.assign(data, {slots, first: status.first});
     Object.assign(element('slot'), {min: status.first, max: slots - 1, disabled: slots === 1});
     element('play').disabled = slots === 1;
-    if (followed !== null && state.slot !== followed) element('follow').checked = false;
+    if (followed !== null && state.slot !== followed) {
+      element('follow').checked = false;
+      showLanes();
+    }
     followed = null;
     if (element('follow').checked) {
       chooseSlot(slots - 1 - (shownVideos().length ? kDecodedBehind : 0));

@@ -9,7 +9,7 @@ const kChartSlots = 32; // on each side of the shown slot, and moved by as many
 const viewer = Array.from(crypto.getRandomValues(new Uint32Array(2)), (word) => word.toString(16)).join('');
 const levels = new Map(); // id of a picture -> {level, method}
 const ages = new Map(); // id of a picture of a camera -> when its light came, as performance.now()
-let leaving = false; // the page begins anew soon: it asks for nothing more
+let leaving = false; // the program has ended, or the page begins anew: it asks for nothing more
 const improving = new Set(); // ids of pictures that better ones are awaited for
 
 function isDecoded(video) {
@@ -41,8 +41,8 @@ async function broughtPlane(id) {
 }
 
 function tellFailure(failure) {
-  element('state').textContent = failure instanceof TypeError ? 'The program that serves this page has ended.'
-                                                              : failure.message;
+  if (failure instanceof TypeError) leaving = true;
+  element('state').textContent = leaving ? 'The program that serves this page has ended.' : failure.message;
   return null;
 }
 

@@ -57,6 +57,8 @@ async function askTimeline() {
 /** The rows of the readout: when each is selected, converted and on the link. */
 async function showLanes() {
   const {slot} = state;
+  element('lanes').hidden = element('follow').checked && data.running_camera !== null; // they change too fast
+  if (element('lanes').hidden) return;
   const lanes = await answered('readout', {run: state.run, slot});
   if (slot !== state.slot) return;
   element('lanes').hidden = !lanes;
