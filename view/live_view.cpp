@@ -51,7 +51,8 @@ void LiveView::record() {
 }
 
 void LiveView::stop_recording() {
-    throw InputError(file_, "ends with the program: Ctrl-C, --frames or --seconds");
+    throw InputError(file_,
+                     "ends with the program, at Ctrl-C or at its limit of frames or seconds");
 }
 
 }  // namespace stipple

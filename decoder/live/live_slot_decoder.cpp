@@ -82,7 +82,7 @@ LiveSlotDecoder::Frame LiveSlotDecoder::decode(const StreamHeader& header,
                                                int slot) {
     assert(live.begin == 0 && live.end == window.slots && live.slots() <= LiveWindow::kMaxSlots);
     const FrameShape shape = window.shape;
-    const WindowDecoder::Wanted wanted{{.begin = slot, .end = slot + 1},
+    const WindowDecoder::Wanted wanted{WindowSlots{.begin = slot, .end = slot + 1},
                                        header.schedule.longest_span_slots()};
     Frame frame{FluxVideo(1, shape), std::vector<std::uint8_t>(shape.sites())};
     const std::vector<Tile> bands = bands_of(shape);
