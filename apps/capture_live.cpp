@@ -73,12 +73,9 @@ struct LivePage {
     PageServer server;
 };
 
-LiveEmulation emulate(LiveCamera& camera, FrameLight to_light, StreamRecorder& recorder,
-                      LiveEmulatorOptions options, LivePage* page, const RunOptions& run) {
+LiveEmulation emulate(LiveEmulator& emulator, const SensorParams& sensor,
+                      std::optional<std::int64_t> frames, LivePage* page, const RunOptions& run) {
     constexpr double kRateAfterS = 1;
-    const SensorParams& sensor = recorder.emulator().setup().params;
-    const auto frames = options.limits.total();
-    LiveEmulator emulator(camera, std::move(to_light), recorder, std::move(options));
     Progress progress(run, "emulating live", frames);
     bool rate_compared = false;
     bool drops_told = false;
@@ -172,9 +169,10 @@ void live(const LiveArguments& arguments, const RunOptions& run) {
     const auto preview = open_preview(arguments.preview, setup);
     const auto page =
         arguments.view ? std::make_unique<LivePage>(camera, arguments, setup) : nullptr;
+    LiveEmulator emulator(camera, to_light, recorder,
+                          emulator_options(arguments, preview.get(), page.get()));
     LiveEmulation emulation =
-        emulate(camera, to_light, recorder, emulator_options(arguments, preview.get(), page.get()),
-                page.get(), run);
+        emulate(emulator, setup.params, arguments.limits.total(), page.get(), run);
     emulation.totals.repeated = camera.stop().repeated;
     if (emulation.latencies.count() == 0) {
         throw_if_stopped();

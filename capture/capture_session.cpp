@@ -286,8 +286,9 @@ void CaptureSession::set(const std::string& feature, const std::string& value) {
     for (const char* of_layout : {"Width", "Height", "Offset", "PixelFormat", "Binning",
                                   "Decimation", "Input", "BufferMemory"})
         if (feature.starts_with(of_layout))
-            throw InputError(feature, "cannot change while frames come; start again with " +
-                                          Parameter{"set", "camera." + feature + "=" + value});
+            throw InputError(feature,
+                             "cannot change while frames come; start again with " +
+                                 Parameter{"set", fmt::format("camera.{}={}", feature, value)});
     if (!impl_->camera) throw DeviceError(feature, "the camera is lost");
     impl_->camera->set(feature, value);
     impl_->description = impl_->camera->description();

@@ -30,8 +30,9 @@ std::tuple<py::list, std::vector<std::string>> find_cameras() {
 /// The fields of capture.CameraFeature in stipple/capture.py.
 py::tuple feature_tuple(const CameraFeature& feature) {
     return py::make_tuple(feature.name, feature.category, feature.type, feature.access,
-                          feature.value, feature.unit, feature.minimum, feature.maximum,
-                          feature.increment, py::tuple(py::cast(feature.choices)), feature.text);
+                          feature.locked, feature.value, feature.unit, feature.minimum,
+                          feature.maximum, feature.increment, py::tuple(py::cast(feature.choices)),
+                          feature.text);
 }
 
 py::list features(const std::string& address, const std::string& pattern) {

@@ -6,7 +6,9 @@
 #include <sys/socket.h>
 
 #include <array>
+#include <atomic>
 #include <charconv>
+#include <chrono>
 #include <exception>
 #include <string_view>
 #include <thread>
@@ -20,6 +22,7 @@ namespace {
 constexpr std::size_t kThreads = 64;
 constexpr std::size_t kMaxBody = 64 * 1024;
 constexpr int kWaitSeconds = 5;
+constexpr std::chrono::milliseconds kPoll{1};
 constexpr int kKeepAliveSeconds = 1;  // for so long the server may take to end
 
 std::string random_token() {
@@ -91,7 +94,12 @@ struct PageServer::Impl {
             throw DeviceError(fmt::format("{}:{}", in_url(address), options.port),
                               "is no address of this machine, or its port is in use; choose with " +
                                   (Parameter{"address"} + " and " + Parameter{"port"}));
-        thread = std::thread([this] { server.listen_after_bind(); });
+        thread = std::thread([this] {
+            server.listen_after_bind();
+            ended = true;
+        });
+        // Before it listens, stop() would do nothing.
+        while (!server.is_running() && !ended) std::this_thread::sleep_for(kPoll);
     }
     ~Impl() {
         server.stop();
@@ -158,6 +166,7 @@ struct PageServer::Impl {
     std::string token;
     int port = 0;
     httplib::Server server;
+    std::atomic<bool> ended = false;
     std::thread thread;
 };
 

@@ -60,6 +60,8 @@ class CameraFeature(NamedTuple):
     """"integer", "float", "boolean", "choice", "text", "command", "mask" (bits), "register" or "unknown"."""
     access: str
     """"rw", "ro", "wo", or "na": not available now."""
+    locked: bool
+    """It is "ro" or "na" only while frames come."""
     value: Optional[str]
     """None if it cannot be read."""
     unit: str

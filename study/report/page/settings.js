@@ -9,7 +9,7 @@ function factsOf() {
     const size = ({cols, rows}) => `${cols} × ${rows}`;
     facts.push(['Frame', `${size(data.frame)}${area.planes === 3 ? ' RGB' : ''}`]);
     if (area.cols < data.frame.cols || area.rows < data.frame.rows) facts.push(['Shown', size(area)]);
-    facts.push(['Slots', `${data.slots}`]);
+    if (!data.running_camera) facts.push(['Slots', `${data.slots}`]);
   }
   if (run) {
     const {schedule, slot_us: slot} = run.stream;
