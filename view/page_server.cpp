@@ -6,7 +6,9 @@
 #include <sys/socket.h>
 
 #include <array>
+#include <atomic>
 #include <charconv>
+#include <chrono>
 #include <exception>
 #include <string_view>
 #include <thread>
@@ -90,9 +92,15 @@ struct PageServer::Impl {
             throw DeviceError(fmt::format("{}:{}", in_url(address), options.port),
                               "is no address of this machine, or its port is in use; choose with " +
                                   (Parameter{"address"} + " and " + Parameter{"port"}));
-        thread = std::thread([this] { server.listen_after_bind(); });
+        thread = std::thread([this] {
+            server.listen_after_bind();
+            ended = true;
+        });
     }
     ~Impl() {
+        // A server that has not begun would not stop.
+        while (!server.is_running() && !ended)
+            std::this_thread::sleep_for(std::chrono::milliseconds(1));
         server.stop();
         thread.join();
     }
@@ -157,6 +165,7 @@ struct PageServer::Impl {
     std::string token;
     int port = 0;
     httplib::Server server;
+    std::atomic<bool> ended = false;
     std::thread thread;
 };
 

@@ -49,8 +49,9 @@ async function improve(video) {
   improving.add(id);
   while (state.slot === slot && shownVideos().includes(video)) {
     if (!await plane(id) || levels.get(id)?.level >= kBestLevel) break;
-    const codes = await broughtPicture(id, levels.get(id).level).catch(tellFailure);
+    const codes = await broughtPicture(id, levels.get(id).level).catch((failure) => (tellFailure(failure), []));
     if (!codes) continue;
+    if (codes.length === 0) break; // the next choice of a slot asks again
     planeCache.set(id, Promise.resolve(codes));
     choose({pictures: state.pictures + 1});
   }
