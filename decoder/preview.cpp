@@ -102,6 +102,7 @@ PreviewSlots PreviewDecoder::newest(std::int64_t end) const {
 }
 
 PreviewSlots PreviewDecoder::around(std::int64_t slot, std::int64_t slots) const {
+    slots = std::max(slots, slot + 1);
     if (in_live_window_) {
         const HaloRange block = slot_range(block_begin(block_of(slot, slots)), slots,
                                            halo_slots(header_.schedule.longest_span_slots()));
