@@ -90,8 +90,9 @@ double PreviewFrame::mean_light() const {
 
 PreviewDecoder::PreviewDecoder(const StreamHeader& header, const PreviewOptions& options)
     : header_(header),
-      method_(options.method),
-      in_live_window_(in_live_window(header_, method_)),
+      in_live_window_(in_live_window(header_, options.method)),
+      method_(options.method == DecodeMethod::kLive && !in_live_window_ ? DecodeMethod::kNaive
+                                                                        : options.method),
       region_(region_of(header_, options)) {}
 
 PreviewSlots PreviewDecoder::newest(std::int64_t end) const {

@@ -68,7 +68,7 @@ std::string_view SlotDecoder::name_of(Level level) const {
         case Level::kNone:
             return "";
         case Level::kLive:
-            return named(DecodeMethod::kLive).name;
+            return named(live_.method()).name;
         case Level::kFast:
             return named(DecodeMethod::kFast).name;
         case Level::kBlock:
