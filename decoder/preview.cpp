@@ -90,8 +90,9 @@ double PreviewFrame::mean_light() const {
 
 PreviewDecoder::PreviewDecoder(const StreamHeader& header, const PreviewOptions& options)
     : header_(header),
-      method_(options.method),
-      in_live_window_(in_live_window(header_, method_)),
+      in_live_window_(in_live_window(header_, options.method)),
+      method_(options.method == DecodeMethod::kLive && !in_live_window_ ? DecodeMethod::kNaive
+                                                                        : options.method),
       region_(region_of(header_, options)) {}
 
 PreviewSlots PreviewDecoder::newest(std::int64_t end) const {
@@ -102,6 +103,7 @@ PreviewSlots PreviewDecoder::newest(std::int64_t end) const {
 }
 
 PreviewSlots PreviewDecoder::around(std::int64_t slot, std::int64_t slots) const {
+    slots = std::max(slots, slot + 1);
     if (in_live_window_) {
         const HaloRange block = slot_range(block_begin(block_of(slot, slots)), slots,
                                            halo_slots(header_.schedule.longest_span_slots()));

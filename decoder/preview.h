@@ -38,9 +38,9 @@ struct PreviewSlots {
 };
 
 /// Decodes single frames of a stream, from the minimum number of slots that contain the exposures
-/// around them; `live` from the window of its method. The number of voxels is limited, so that a
-/// frame takes at most some seconds and some hundred MB: of a frame that is too large only the
-/// middle is decoded.
+/// around them; `live` from the window of its method, or by `naive` where pixels have no sample in
+/// such a window. The number of voxels is limited, so that a frame takes at most some seconds and
+/// some hundred MB: of a frame that is too large only the middle is decoded.
 class PreviewDecoder {
   public:
     /// `header` must outlive this: its schedule may take 30 MB.
@@ -49,6 +49,7 @@ class PreviewDecoder {
     /// Number of slots that a frame is decoded from, where the stream has as many.
     [[nodiscard]] int slots() const { return region_.slots; }
     [[nodiscard]] FrameShape shape() const { return region_.shape; }
+    [[nodiscard]] DecodeMethod method() const { return method_; }
     /// Of the last slots() slots before `end`, the one that is shown of a growing stream.
     [[nodiscard]] PreviewSlots newest(std::int64_t end) const;
     /// What a slot is decoded from in a stream that has `slots` slots so far; by `live` as in
@@ -56,18 +57,17 @@ class PreviewDecoder {
     [[nodiscard]] PreviewSlots around(std::int64_t slot, std::int64_t slots) const;
 
     /// Decodes a slot from the packets of its slots. The method `live` has the bits of `decode` if
-    /// each site that has samples has some in the window (slots_with_a_sample), and keeps its
-    /// memory. Returns nothing if `progress` has stopped it. \throws InputError as
-    /// collect_measurements.
+    /// no sample is lost, and keeps its memory. Returns nothing if `progress` has stopped it.
+    /// \throws InputError as collect_measurements.
     [[nodiscard]] std::optional<PreviewFrame> decode(const PreviewSlots& slots,
                                                      std::span<const SamplePacket> packets,
                                                      const ProgressCallback& progress);
 
   private:
     const StreamHeader& header_;
+    bool in_live_window_;  ///< by `live`
     DecodeMethod method_;
-    bool in_live_window_;  ///< by `live`, where its window has samples of all pixels
-    VideoWindow region_;   ///< of the first slots
+    VideoWindow region_;  ///< of the first slots
     LiveSlotDecoder live_;
 };
 

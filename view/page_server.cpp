@@ -22,7 +22,6 @@ namespace {
 constexpr std::size_t kThreads = 64;
 constexpr std::size_t kMaxBody = 64 * 1024;
 constexpr int kWaitSeconds = 5;
-constexpr std::chrono::milliseconds kPoll{1};
 constexpr int kKeepAliveSeconds = 1;  // for so long the server may take to end
 
 std::string random_token() {
@@ -98,10 +97,11 @@ struct PageServer::Impl {
             server.listen_after_bind();
             ended = true;
         });
-        // Before it listens, stop() would do nothing.
-        while (!server.is_running() && !ended) std::this_thread::sleep_for(kPoll);
     }
     ~Impl() {
+        // A server that has not begun would not stop.
+        while (!server.is_running() && !ended)
+            std::this_thread::sleep_for(std::chrono::milliseconds(1));
         server.stop();
         thread.join();
     }

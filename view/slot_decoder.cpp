@@ -1,5 +1,6 @@
 #include "view/slot_decoder.h"
 
+#include <malloc.h>
 #include <sys/resource.h>
 #include <unistd.h>
 
@@ -16,14 +17,13 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
-/// A better picture of a running camera is decoded for who looks at a slot for so long.
-constexpr std::chrono::milliseconds kLooksFor{300};
-
 /// So few cores are for the emulation alone, but one.
 constexpr int kFewCores = 3;
 
 /// A viewer that has not asked for so long is gone.
 constexpr std::chrono::seconds kForgetAfter{15};
+/// A slot that has been looked at for so long is not just passed by.
+constexpr std::chrono::milliseconds kPassing{150};
 constexpr std::size_t kMaxBytes = std::size_t{192} << 20U;
 
 std::size_t index_of(SlotDecoder::Level level) {
@@ -85,7 +85,7 @@ std::string_view SlotDecoder::name_of(Level level) const {
         case Level::kNone:
             return "";
         case Level::kLive:
-            return named(DecodeMethod::kLive).name;
+            return named(live_.method()).name;
         case Level::kFast:
             return named(DecodeMethod::kFast).name;
         case Level::kBlock:
@@ -113,7 +113,10 @@ std::optional<SlotDecoder::Picture> SlotDecoder::picture(const std::string& view
     const auto end = Clock::now() + wait;
     look_for_more();
     std::unique_lock lock(mutex_);
-    wishes_[viewer] = {slot, Clock::now()};
+    Wish& asked = wishes_[viewer];
+    if (asked.slot != slot || asked.asked == Clock::time_point{}) asked.since = Clock::now();
+    asked.slot = slot;
+    asked.asked = Clock::now();
     changed_.notify_all();
     for (;;) {
         const Picture best = best_of(slot);
@@ -154,7 +157,7 @@ std::optional<SlotDecoder::Task> SlotDecoder::next_task(Level level) {
     for (const auto& [viewer, wish] : wishes_) {
         const Level there = best_of(wish.slot).level;
         if (there >= level || failures_.contains(wish.slot)) continue;
-        if (on_camera() && level > Level::kLive && Clock::now() - wish.asked < kLooksFor) continue;
+        if (level > Level::kLive && Clock::now() - wish.since < kPassing) continue;
         if (level == Level::kBlock && (there < Level::kFast || !whole_block(wish.slot))) continue;
         if (next && wish.asked < asked) continue;
         next = {wish.slot, level};
@@ -190,13 +193,14 @@ void SlotDecoder::run(Level level) {
             std::unique_lock lock(mutex_);
             if (level == Level::kLive || !first_wanted()) task = next_task(level);
             if (!task) {
-                changed_.wait_for(lock, std::chrono::seconds(1));
+                changed_.wait_for(lock, kPassing / 3);
                 continue;
             }
         }
         try {
             const bool spares_cores = on_camera() && thread_count() <= kFewCores;
             spares_cores ? run_on_this_thread([&] { work(*task); }) : work(*task);
+            if (level > Level::kLive) malloc_trim(0);  // some hundred MB
         } catch (const std::exception& e) {
             const std::lock_guard lock(mutex_);
             failures_[task->slot] = e.what();

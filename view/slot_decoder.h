@@ -26,7 +26,8 @@ namespace stipple {
 /// The pictures of a decoded stream, where they are looked at: one of a few slots at once (`live`,
 /// then `fast`, of the slots around), and behind it the whole block of `decode`, whose pictures
 /// have its bits. A thread for each level decodes what was asked for last, and drops what nobody
-/// waits for. The better ones stop while a first picture is made.
+/// waits for. The better ones wait while a first picture is made, and until a slot has been looked
+/// at for a moment.
 class SlotDecoder {
   public:
     /// How good a picture is; each is better than those before.
@@ -55,14 +56,15 @@ class SlotDecoder {
     void end();
     /// What is there of a slot.
     [[nodiscard]] Picture known(std::int64_t slot) const;
-    /// "live", "fast", or the method of blocks.
+    /// "live" (or "naive", PreviewDecoder), "fast", or the method of blocks.
     [[nodiscard]] std::string_view name_of(Level level) const;
 
   private:
     using Codes = std::shared_ptr<const std::vector<std::uint16_t>>;
     struct Wish {
         std::int64_t slot = 0;
-        std::chrono::steady_clock::time_point asked;
+        std::chrono::steady_clock::time_point asked;  ///< last
+        std::chrono::steady_clock::time_point since;  ///< of this slot first
     };
     struct Task {
         std::int64_t slot = 0;

@@ -82,9 +82,11 @@ LiveSlotDecoder::Frame LiveSlotDecoder::decode(const StreamHeader& header,
                                                int slot) {
     assert(live.begin == 0 && live.end == window.slots && live.slots() <= LiveWindow::kMaxSlots);
     const FrameShape shape = window.shape;
-    const WindowDecoder::Wanted wanted{WindowSlots{.begin = slot, .end = slot + 1},
+    const WindowDecoder::Wanted wanted{WindowSlots{slot, slot + 1},
                                        header.schedule.longest_span_slots()};
-    Frame frame{FluxVideo(1, shape), std::vector<std::uint8_t>(shape.sites())};
+    Frame frame;
+    frame.light = FluxVideo(1, shape);
+    frame.known.resize(shape.sites());
     const std::vector<Tile> bands = bands_of(shape);
     const auto decode_band = [&](const Tile& band, Memory& memory) {
         const VideoWindow part = part_of(window, band);

@@ -14,7 +14,7 @@ namespace stipple {
 [[nodiscard]] int slots_with_a_sample(const ExposureSchedule& schedule);
 
 /// Decodes single slots by the method `live`, each from the samples of its window alone, in bands
-/// of rows: in 30 MB for each thread (of 640 columns and one plane) that are kept for the next one.
+/// of rows: in 20 MB for each thread (of 640 columns and one plane) that are kept for the next one.
 class LiveSlotDecoder {
   public:
     struct Frame {

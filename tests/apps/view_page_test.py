@@ -18,6 +18,7 @@ class ViewPageTest(BrowserTest):
         self.succeed("synth", "pan", "-o", "scene.npy", "--frames", SLOTS, "--size", f"{COLS}x{ROWS}")
         self.succeed("emulate", "scene.npy", "-o", "clip.stipple", "--sensor", "lux1310", "--luminance")
         self.viewer = Viewer(self, "clip.stipple", "--truth", "scene.npy", "--luminance", "--method", "fast")
+        self.addCleanup(self.browser.get, "about:blank")  # before its server ends
         self.browser.get(self.viewer.url)
         self.addCleanup(self.browser.get, "about:blank")  # before its server ends
         self.wait(lambda: self.script("return document.documentElement.dataset.ready === 'true'"))

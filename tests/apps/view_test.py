@@ -70,8 +70,8 @@ class Viewer:
 
 
 class ViewTest(ProgramTest):
-    def make_clip(self, *options):
-        self.succeed("synth", "pan", "-o", "scene.npy", "--frames", SLOTS, "--size", f"{COLS}x{ROWS}")
+    def make_clip(self, *options, slots=SLOTS):
+        self.succeed("synth", "pan", "-o", "scene.npy", "--frames", slots, "--size", f"{COLS}x{ROWS}")
         self.succeed("emulate", "scene.npy", "-o", "clip.stipple", *options)
 
     def test_the_last_picture_of_a_slot_has_the_light_of_decode(self):
@@ -86,6 +86,17 @@ class ViewTest(ProgramTest):
                 level = int(fields["Stipple-Level"])
                 seen.append(fields["Stipple-Method"])
             self.assertEqual(seen[-1], "fast")
+            expected = np.where(decoded[slot].ravel() < 2.0 ** -14.01, 0, decoded[slot].ravel())
+            np.testing.assert_allclose(light_of(codes), expected, rtol=0.0028, atol=2.0 ** -14)
+
+    def test_the_first_picture_of_a_slot_has_the_light_of_the_method_live(self):
+        self.make_clip("--luminance", slots=130)  # three blocks
+        self.succeed("decode", "clip.stipple", "-o", "decoded.npy", "--method", "live")
+        decoded = self.array("decoded.npy")
+        viewer = Viewer(self, "clip.stipple")
+        for slot in (0, 47, 48, 70, 95, 112, 129):
+            fields, codes = viewer.picture(0, slot, than=0)
+            self.assertEqual((fields["Stipple-Method"], fields["Stipple-Level"]), ("live", "1"))
             expected = np.where(decoded[slot].ravel() < 2.0 ** -14.01, 0, decoded[slot].ravel())
             np.testing.assert_allclose(light_of(codes), expected, rtol=0.0028, atol=2.0 ** -14)
 

@@ -121,6 +121,17 @@ TEST_F(LivePreviewTest, AFrameOfTheMethodLiveIsDecodedFromTheSlotsOfItsWindow) {
     }
 }
 
+TEST(PreviewDecoderTest, DecodesByNaiveWhatAWindowOfLiveHasNoSampleOf) {
+    const auto method = [](int period) {
+        const ExposureSchedule rare(1, 1, period, {0, 1}, {{.first_slot = 0, .open_slots = 1}});
+        const Recorded recorded = record(uniform_video(), rare);
+        return PreviewDecoder(recorded.header, {.method = DecodeMethod::kLive, .size = {}})
+            .method();
+    };
+    EXPECT_EQ(method(16), DecodeMethod::kLive);
+    EXPECT_EQ(method(17), DecodeMethod::kNaive);
+}
+
 TEST_F(LivePreviewTest, AFailureIsToldOnceAndCounted) {
     std::counting_semaphore<> tried{0};
     int told = 0;
