@@ -18,18 +18,6 @@ ViewOptions with_camera(ViewOptions options, ViewedCamera& camera) {
     return options;
 }
 
-std::string value_of(const PageRequest& request, const char* key) {
-    const auto found = request.keys.find(key);
-    return found == request.keys.end() ? std::string() : found->second;
-}
-
-/// `settings` with another value, the last one.
-CameraSettings with(CameraSettings settings, const std::string& feature, const std::string& value) {
-    std::erase_if(settings, [&](const auto& setting) { return setting.first == feature; });
-    settings.emplace_back(feature, value);
-    return settings;
-}
-
 }  // namespace
 
 CameraPage::Shown::Shown(const ViewedCameraOptions& options, ViewOptions view)
@@ -79,7 +67,7 @@ void CameraPage::open_anew(const CameraSettings& settings) {
 
 PageAnswer CameraPage::set(const PageRequest& request) {
     const std::lock_guard one_at_a_time(setting_);
-    const std::string feature = value_of(request, "feature"), value = value_of(request, "value");
+    const std::string feature = request.text("feature"), value = request.text("value");
     CameraSettings before;
     bool stopped = request.keys.contains("stopped");
     {
@@ -94,7 +82,7 @@ PageAnswer CameraPage::set(const PageRequest& request) {
             throw InputError(feature, "cannot change while the camera is recorded; stop first");
     }
     if (stopped) try {
-            open_anew(with(before, feature, value));
+            open_anew(with_setting(before, feature, value));
         } catch (...) {
             open_anew(before);
             throw;

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <nlohmann/json.hpp>
+#include <numeric>
 
 #include "capture/camera_search.h"
 #include "capture/capture_figures.h"
@@ -38,6 +39,10 @@ ordered_json CameraEvents::json() const {
     for (const auto& [seconds, text] : events_)
         events.push_back({{"seconds", seconds}, {"text", text}});
     return events;
+}
+
+std::uint64_t all_lost(const LostFrames& lost) {
+    return std::accumulate(lost.begin(), lost.end(), std::uint64_t{0});
 }
 
 ordered_json CameraView::features() const {

@@ -28,6 +28,9 @@ class CameraEvents {
     std::deque<std::pair<double, std::string>> events_;
 };
 
+/// The lost frames of all causes.
+[[nodiscard]] std::uint64_t all_lost(const LostFrames& lost);
+
 /// What a page shows of a running camera. For several threads.
 class CameraView {
   public:

@@ -33,17 +33,17 @@ void LiveView::note(const LiveEmulation& now) {
 
 nlohmann::ordered_json LiveView::status() const {
     const std::lock_guard lock(mutex_);
-    std::uint64_t lost = 0;
-    for (const std::uint64_t of_cause : totals_.lost) lost += of_cause;
-    return {{"frames", frames_},
-            {"frames_hz", or_null(frames_hz_)},
-            {"lost", json_of([&](const auto& add) { visit_lost_figures(totals_, add); })},
-            {"incomplete", totals_.incomplete},
-            {"outages", totals_.outages},
-            {"skipped", skipped_},
-            {"recording", {{"file", file_}, {"frames", frames_}, {"lost", lost}, {"stop", false}}},
-            {"events", events_.json()},
-            {"ended", nullptr}};
+    return {
+        {"frames", frames_},
+        {"frames_hz", or_null(frames_hz_)},
+        {"lost", json_of([&](const auto& add) { visit_lost_figures(totals_, add); })},
+        {"incomplete", totals_.incomplete},
+        {"outages", totals_.outages},
+        {"skipped", skipped_},
+        {"recording",
+         {{"file", file_}, {"frames", frames_}, {"lost", all_lost(totals_.lost)}, {"stop", false}}},
+        {"events", events_.json()},
+        {"ended", nullptr}};
 }
 
 void LiveView::record() {

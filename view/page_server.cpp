@@ -68,6 +68,11 @@ std::optional<std::int64_t> PageRequest::number(const std::string& key) const {
     return value;
 }
 
+std::string PageRequest::text(const std::string& key) const {
+    const auto found = keys.find(key);
+    return found == keys.end() ? std::string() : found->second;
+}
+
 struct PageServer::Impl {
     Impl(const PageServerOptions& options, Handler answer)
         : address(options.address), handler(std::move(answer)), token(random_token()) {

@@ -22,6 +22,8 @@ struct PageRequest {
 
     /// The whole number of a key; nothing if it is absent, or is not one.
     [[nodiscard]] std::optional<std::int64_t> number(const std::string& key) const;
+    /// The text of a key; empty if it is absent.
+    [[nodiscard]] std::string text(const std::string& key) const;
 };
 
 struct PageAnswer {

@@ -194,10 +194,9 @@ std::optional<PageAnswer> ViewPage::picture(const Video& video, std::int64_t slo
     using Level = SlotDecoder::Level;
     const auto than = std::clamp<std::int64_t>(request.number("than").value_or(0), 0, 3);
     const auto wait = std::clamp<std::int64_t>(request.number("wait").value_or(0), 0, kMaxWaitMs);
-    const auto viewer = request.keys.find("viewer");
     const auto found =
-        video.decoder->picture(viewer == request.keys.end() ? "" : viewer->second.substr(0, 64),
-                               slot, static_cast<Level>(than), std::chrono::milliseconds(wait));
+        video.decoder->picture(request.text("viewer").substr(0, 64), slot, static_cast<Level>(than),
+                               std::chrono::milliseconds(wait));
     if (!found) return plane_answer({});
     PageAnswer answer = plane_answer(*found->codes);
     add_age(answer, slot);

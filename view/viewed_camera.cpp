@@ -28,12 +28,6 @@ std::string loss_text(const FrameRecord& record) {
     return fmt::format("{} lost before frame {}: {}", record.lost_before, record.id, cause);
 }
 
-std::uint64_t all_lost(const SessionTotals& totals) {
-    std::uint64_t sum = 0;
-    for (const std::uint64_t lost : totals.lost) sum += lost;
-    return sum;
-}
-
 }  // namespace
 
 /// A recording, and what the session had counted when it began.
@@ -46,6 +40,13 @@ struct ViewedCamera::Recording {
     SessionTotals before;
     std::optional<std::uint64_t> first_id;  ///< of the session
 };
+
+CameraSettings with_setting(CameraSettings settings, const std::string& feature,
+                            const std::string& value) {
+    std::erase_if(settings, [&](const auto& setting) { return setting.first == feature; });
+    settings.emplace_back(feature, value);
+    return settings;
+}
 
 ViewedCamera::ViewedCamera(ViewedCameraOptions options)
     : options_(std::move(options)),
@@ -151,6 +152,7 @@ void ViewedCamera::take(CapturedFrame frame) {
         }
         copy.record.id -= *recording_->first_id;
         if (!recording_->frames.push(std::move(copy))) session_.count_queue_drop(record);
+        if (recording_->frames.failed()) end_recording();  // such as a full disk
     }
     const bool shown = record.status == FrameStatus::kComplete && record.layout == layout_ &&
                        frames_.push(std::move(frame));
@@ -161,7 +163,7 @@ void ViewedCamera::take(CapturedFrame frame) {
     totals_ = session_.totals();
     if (!recording_) return;
     recorded_ = totals_.frames - recording_->before.frames;
-    lost_ = all_lost(totals_) - all_lost(recording_->before);
+    lost_ = all_lost(totals_.lost) - all_lost(recording_->before.lost);
 }
 
 void ViewedCamera::emulate() {
@@ -208,28 +210,26 @@ void ViewedCamera::end_recording() {
         const std::lock_guard lock(mutex_);
         file_.clear();
     }
-    finishing_.push_back(std::async(
-        std::launch::async,
-        [this, end, recording = std::shared_ptr<Recording>(std::move(recording_))] {
-            const std::string file = recording->output.final_path().string();
-            try {
-                const RecordingResult made = recording->frames.finish(end);
-                std::uint64_t lost = 0;
-                for (const std::uint64_t of_cause : made.end.lost) lost += of_cause;
-                events_.add(fmt::format("{}: {} frames, {} lost", file, made.end.frames, lost));
-                if (made.failure) std::rethrow_exception(made.failure);
-            } catch (const std::exception& e) {
-                events_.add(fmt::format("{}: {}", file, e.what()));
-            }
-        }));
+    finishing_.push_back(
+        std::async(std::launch::async,
+                   [this, end, recording = std::shared_ptr<Recording>(std::move(recording_))] {
+                       const std::string file = recording->output.final_path().string();
+                       try {
+                           const RecordingResult made = recording->frames.finish(end);
+                           events_.add(fmt::format("{}: {} frames, {} lost", file, made.end.frames,
+                                                   all_lost(made.end.lost)));
+                           if (made.failure) std::rethrow_exception(made.failure);
+                       } catch (const std::exception& e) {
+                           events_.add(fmt::format("{}: {}", file, e.what()));
+                       }
+                   }));
 }
 
 void ViewedCamera::set(const std::string& feature, const std::string& value) {
     in_session([&] {
         session_.set(feature, value);
         const std::lock_guard lock(settings_mutex_);
-        std::erase_if(settings_, [&](const auto& setting) { return setting.first == feature; });
-        settings_.emplace_back(feature, value);
+        settings_ = with_setting(std::move(settings_), feature, value);
     });
     events_.add(fmt::format("{} = {}", feature, value));
 }

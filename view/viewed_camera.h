@@ -35,6 +35,10 @@ struct ViewedCameraOptions {
     std::function<void(const Message&)> warn = {};       ///< at the begin
 };
 
+/// `settings` with this value of a feature, set last.
+[[nodiscard]] CameraSettings with_setting(CameraSettings settings, const std::string& feature,
+                                          const std::string& value);
+
 /// A running camera that is looked at: its frames, and what the emulated sensor makes of them. A
 /// thread receives the frames; those that are recorded never wait for the other threads. Another
 /// one emulates the frames that it has the time for. For several threads.

@@ -168,25 +168,25 @@ class CameraPageTest(BrowserTest, ServedCamera):
         self.wait(lambda: ".strec" in self.element("camera-events").text)
         self.assertEqual(len(list(self.folder.glob("*.strec"))), 1)
 
-    def test_features_are_set_on_the_page(self):
+    def set_feature(self, name, value):
+        """Types a value into the table of features. The fields of this name."""
         self.script("document.getElementById('features').open = true")
-        self.element("feature-filter").send_keys("Heartbeat")
+        self.element("feature-filter").send_keys(name)
 
-        def field():
-            return self.browser.find_elements(By.CSS_SELECTOR, "#features-table input[aria-label=GevHeartbeatTimeout]")
-        self.wait(field)
-        self.script("const input = arguments[0]; input.value = '2000'; input.dispatchEvent(new Event('change'))", field()[0])
+        def fields():
+            return self.browser.find_elements(By.CSS_SELECTOR, f"#features-table input[aria-label={name}]")
+        self.wait(fields)
+        self.script("const [input, value] = arguments; input.value = value; input.dispatchEvent(new Event('change'))",
+                    fields()[0], value)
+        return fields
+
+    def test_features_are_set_on_the_page(self):
+        fields = self.set_feature("GevHeartbeatTimeout", "2000")
         self.wait(lambda: self.element("feature-answer").text == "GevHeartbeatTimeout = 2000")
-        self.wait(lambda: field() and field()[0].get_attribute("value") == "2000")
+        self.wait(lambda: fields() and fields()[0].get_attribute("value") == "2000")
 
     def test_a_region_is_set_by_opening_the_camera_anew(self):
-        self.script("document.getElementById('features').open = true")
-        self.element("feature-filter").send_keys("Height")
-
-        def field():
-            return self.browser.find_elements(By.CSS_SELECTOR, "#features-table input[aria-label=Height]")
-        self.wait(field)
-        self.script("const input = arguments[0]; input.value = '24'; input.dispatchEvent(new Event('change'))", field()[0])
+        self.set_feature("Height", "24")
         self.wait(lambda: self.script("return data.frame.rows") == 24)
 
     def test_edges_and_clipped_pixels_are_marked(self):
