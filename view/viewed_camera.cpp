@@ -219,6 +219,8 @@ void ViewedCamera::end_recording() {
                            events_.add(fmt::format("{}: {} frames, {} lost", file, made.end.frames,
                                                    all_lost(made.end.lost)));
                            if (made.failure) std::rethrow_exception(made.failure);
+                       } catch (const Error& e) {  // names the file
+                           events_.add(e.what());
                        } catch (const std::exception& e) {
                            events_.add(fmt::format("{}: {}", file, e.what()));
                        }
