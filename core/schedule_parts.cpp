@@ -4,6 +4,7 @@
 #include <bit>
 
 #include "core/index.h"
+#include "core/parallel.h"
 
 namespace stipple {
 namespace {
@@ -99,6 +100,21 @@ ReadExposure joined(std::uint64_t unread, const ReadExposure& next, std::int64_t
     return {first, open};
 }
 
+UnreadSlots::Longest longest_of_row(const SchedulePart& last, int row,
+                                    std::span<const std::uint64_t> unread_slots) {
+    UnreadSlots::Longest longest;
+    for (int col = 0; col < static_cast<int>(unread_slots.size()); ++col) {
+        const std::uint64_t unread = unread_slots[index(col)];
+        const auto next = PixelPart(last, row, col).next_read(last.first_slot);
+        if (!next) continue;
+        const std::int64_t read = next->first_slot + width(next->open_slots) - 1;
+        const std::int64_t first = unread == 0 ? joined(0, *next, last.first_slot).first_slot
+                                               : last.first_slot - width(unread);
+        if (read - first + 1 > longest.slots) longest = {{read, row, col}, read - first + 1};
+    }
+    return longest;
+}
+
 }  // namespace
 
 std::size_t part_at(std::span<const SchedulePart> parts, std::int64_t slot) {
@@ -123,7 +139,7 @@ void UnreadSlots::pass(std::span<const SchedulePart> parts) {
     const std::int64_t end = parts.back().first_slot;
     const std::int64_t slots = end - before.first_slot;
     constexpr auto kOldest = std::uint64_t{1} << 63U;
-    for (int row = 0; row < shape_.rows; ++row)
+    parallel_for(0, shape_.rows, [&](int row) {
         for (int col = 0; col < shape_.cols; ++col) {
             std::uint64_t& unread = unread_[row_major(row, col, shape_.cols)];
             const PixelPart pixel(before, row, col);
@@ -132,22 +148,17 @@ void UnreadSlots::pass(std::span<const SchedulePart> parts) {
             unread = pixel.under_way(end) | shifted(old, slots) | (leaves ? kOldest : 0);
             if (!parts.back().follows) unread = 0;
         }
+    });
 }
 
 UnreadSlots::Longest UnreadSlots::longest(const SchedulePart& last) const {
-    Longest longest;
-    for (int row = 0; row < shape_.rows; ++row)
-        for (int col = 0; col < shape_.cols; ++col) {
-            const std::uint64_t unread = unread_[row_major(row, col, shape_.cols)];
-            const auto next = PixelPart(last, row, col).next_read(last.first_slot);
-            if (!next) continue;
-            const ReadExposure exposure = joined(0, *next, last.first_slot);
-            const std::int64_t read = next->first_slot + width(next->open_slots) - 1;
-            const std::int64_t first =
-                unread == 0 ? exposure.first_slot : last.first_slot - width(unread);
-            if (read - first + 1 > longest.slots) longest = {{read, row, col}, read - first + 1};
-        }
-    return longest;
+    std::vector<Longest> of_rows(index(shape_.rows));
+    parallel_for(0, shape_.rows, [&](int row) {
+        const auto unread =
+            std::span(unread_).subspan(index(row) * index(shape_.cols), index(shape_.cols));
+        of_rows[index(row)] = longest_of_row(last, row, unread);
+    });
+    return *std::ranges::max_element(of_rows, {}, &Longest::slots);  // the first of equal ones
 }
 
 }  // namespace stipple

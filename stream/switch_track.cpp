@@ -40,9 +40,10 @@ const DueCounts* SwitchTrack::counts() const {
 void SwitchTrack::check(const ScheduleSwitch& next) const {
     const StreamHeader& header = stream_.header;
     if (!follows_)
-        throw InputError(where_, fmt::format("its schedule changes at slot {}, which this use of a "
-                                             "stream does not follow; \"stipple decode\" does",
-                                             next.slot));
+        throw InputError(
+            where_, fmt::format("its schedule changes at slot {}; only \"stipple decode\" of one "
+                                "stream, \"info\" and \"recover\" follow that",
+                                next.slot));
     if (!header.sites.empty() && next.values != readout_values(header.calibration))
         throw InputError(where_,
                          fmt::format("its readout changes at slot {}, but the calibration of each "
