@@ -11,6 +11,7 @@
 #include "core/index.h"
 #include "core/parallel.h"
 #include "decoder/pixel_response.h"
+#include "stream/schedule_switch.h"
 
 namespace stipple {
 namespace {
@@ -19,21 +20,30 @@ class Collector {
   public:
     Collector(const StreamHeader& header, const VideoWindow& window, Measurements& measurements)
         : schedule_(header.schedule),
+          parts_(schedule_parts(header)),
           array_(header.shape),
           cfa_(header.cfa),
-          responses_(header),
+          // A sensor of a rig may begin later than the window.
+          first_part_(part_at(parts_, std::max<std::int64_t>(window.first_slot, 0))),
           window_(window),
-          out_(measurements) {}
+          out_(measurements) {
+        for (std::size_t i = first_part_; i < parts_.size(); ++i)
+            if (i == first_part_ || parts_[i].first_slot < window.first_slot + window.slots)
+                responses_.emplace_back(
+                    header, readout_values(calibration_at(header, parts_[i].first_slot)));
+    }
 
     void add(const SamplePacket& packet) {
         if (packet.slot < window_.first_slot || packet.slot >= window_.first_slot + window_.slots ||
             packet.dn.empty())
             return;
         const std::uint16_t* dn = packet.dn.data();
+        const std::size_t i = part_at(parts_, packet.slot);
+        const std::int64_t slot = readout_slot(parts_[i], packet.slot);
         for (int row = packet.first_row; row < packet.first_row + packet.rows; ++row)
-            for_each_readout(schedule_, packet.slot, row, array_.cols,
+            for_each_readout(*parts_[i].schedule, slot, row, array_.cols,
                              [&](int col, int span_slots) {
-                                 place(packet.slot, row, col, {dn, span_slots});
+                                 place(i, {packet.slot, row, col}, {dn, span_slots});
                                  dn += array_.planes;
                              });
     }
@@ -44,29 +54,33 @@ class Collector {
         int span_slots;
     };
 
-    void place(std::int64_t last_slot, int row, int col, const Sample& sample) {
+    /// A sample of a part of the schedule, read at the end of a slot.
+    void place(std::size_t part, const PixelSlot& at, const Sample& sample) {
+        const auto [last_slot, row, col] = at;
         const int window_row = row - window_.first_row;
         const int window_col = col - window_.first_col;
-        const std::int64_t first = last_slot - sample.span_slots + 1 - window_.first_slot;
         if (window_row < 0 || window_row >= window_.shape.rows || window_col < 0 ||
-            window_col >= window_.shape.cols || first < 0)
+            window_col >= window_.shape.cols)
             return;
-        const Span span = span_of(last_slot, row, col, sample.span_slots);
+        const Span span = span_of(part, at, sample.span_slots);
+        const std::int64_t first = last_slot - span.slots + 1 - window_.first_slot;
+        if (span.slots == 0 || first < 0) return;
+        const SiteResponses& responses = responses_[part - first_part_];
         const auto sites = window_.shape.sites();
         const int first_plane = cfa_ == ColourFilter::kNone ? 0 : colour_plane(cfa_, row, col);
         auto voxel = index(first) * sites + index(first_plane) * window_.shape.pixels() +
                      row_major(window_row, window_col, window_.shape.cols);
         for (int plane = 0; plane < array_.planes; ++plane, voxel += window_.shape.pixels()) {
-            const PixelResponse response = responses_.at(plane, row, col);
+            const PixelResponse response = responses.at(plane, row, col);
             if (!response.defect()) write(voxel, sample.dn[plane], span, response);
         }
         if (schedule_.weighted())
-            write_weights(index(first), span, {last_slot - sample.span_slots + 1, row, col});
+            write_weights(index(first), span, {last_slot - span.slots + 1, row, col});
     }
 
     struct Span {
         std::uint64_t open_slots;
-        int slots;
+        int slots;                ///< 0 if unknown
         std::uint8_t open_state;  ///< kOpen, and the chain
     };
 
@@ -90,14 +104,8 @@ class Collector {
         out_.variance[last_voxel] = out_.variance_at(last_voxel, out_.sum[last_voxel]);
     }
 
-    struct FirstSlot {
-        std::int64_t slot;
-        int row;
-        int col;
-    };
-
-    /// `first` is the slot of the window in which the exposure begins.
-    void write_weights(std::size_t first, const Span& span, const FirstSlot& at) {
+    /// `first` is the slot of the window in which the exposure begins, at.slot that of the stream.
+    void write_weights(std::size_t first, const Span& span, const PixelSlot& at) {
         const auto pixel =
             row_major(at.row - window_.first_row, at.col - window_.first_col, window_.shape.cols);
         for (int i = 0; i < span.slots; ++i) {
@@ -113,25 +121,44 @@ class Collector {
         }
     }
 
-    [[nodiscard]] Span span_of(std::int64_t last_slot, int row, int col, int span_slots) const {
-        const std::int64_t period = schedule_.period_slots();
-        const std::int64_t begin = last_slot - span_slots + 1;  // 0 or more, or it were not due
-        const int tile_row = row % schedule_.tile_rows();
-        const int tile_col = col % schedule_.tile_cols();
-        const std::size_t i = exposure_starting_at(schedule_, tile_row, tile_col, begin);
-        const std::uint64_t open_slots = schedule_.exposures(tile_row, tile_col)[i].open_slots;
-        const bool second = schedule_.store(tile_row, tile_col, i, begin / period) != 0;
+    [[nodiscard]] Span span_of(std::size_t part, const PixelSlot& at, int span_slots) const {
+        const ExposureSchedule& schedule = *parts_[part].schedule;
+        const std::int64_t period = schedule.period_slots();
+        // After a period each pixel has been read since the switch.
+        if (part > 0 && at.slot < parts_[part].first_slot + period) {
+            const auto read = read_exposure(parts_, at);
+            if (!read) return {};
+            return {read->open_slots, static_cast<int>(std::bit_width(read->open_slots)),
+                    Measurements::kOpen};
+        }
+        const std::int64_t begin = at.slot - span_slots + 1;  // 0 or more, or it were not due
+        const int tile_row = at.row % schedule.tile_rows();
+        const int tile_col = at.col % schedule.tile_cols();
+        const std::size_t i = exposure_starting_at(schedule, tile_row, tile_col, begin);
+        const std::uint64_t open_slots = schedule.exposures(tile_row, tile_col)[i].open_slots;
+        const bool second = schedule.store(tile_row, tile_col, i, begin / period) != 0;
         const int open_state = Measurements::kOpen | (second ? Measurements::kSecond : 0);
         return {open_slots, span_slots, static_cast<std::uint8_t>(open_state)};
     }
 
-    const ExposureSchedule& schedule_;
+    const ExposureSchedule& schedule_;  ///< the first one, which alone may have weights
+    std::vector<SchedulePart> parts_;
     FrameShape array_;
     ColourFilter cfa_;
-    SiteResponses responses_;
+    std::size_t first_part_;                ///< of the window
+    std::vector<SiteResponses> responses_;  ///< of this part and the later ones in the window
     VideoWindow window_;
     Measurements& out_;
 };
+
+/// True if the readouts of a window do not all have the same values.
+bool readout_changes(const StreamHeader& header, const VideoWindow& window) {
+    const ReadoutValues first = readout_values(calibration_at(header, window.first_slot));
+    return std::ranges::any_of(header.switches, [&](const ScheduleSwitch& part) {
+        return part.slot > window.first_slot && part.slot < window.first_slot + window.slots &&
+               part.values != first;
+    });
+}
 
 }  // namespace
 
@@ -162,7 +189,7 @@ Measurements collect_measurements(const StreamHeader& header, std::span<const Sa
     };
     const Calibration& calibration = header.calibration;
     if (calibration.dark_e_per_slot != 0 || !calibration.tile.pixels.empty() ||
-        !header.sites.empty()) {
+        !header.sites.empty() || readout_changes(header, window)) {
         result.dark_variance.resize(window.voxels());
         result.variance_per_light.resize(window.voxels());
     }

@@ -23,6 +23,10 @@ StreamReader opened(const std::filesystem::path& file) {
     if (reader.header().schedule.weighted())
         throw InputError(file.string(),
                          "a page shows no grey masks; \"stipple decode\" takes this stream");
+    if (reader.header().may_switch)
+        throw InputError(file.string(),
+                         "may change its schedule, of which a page shows one; \"stipple decode\" "
+                         "takes this stream");
     return reader;
 }
 
