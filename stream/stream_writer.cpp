@@ -29,6 +29,7 @@ struct StreamWriter::Impl {
           order(stream.shape.rows),
           seed(framing_of(encoded).seed),
           checksum(seed) {
+        header.switches.clear();  // those that a reader has met in another stream
         file.append(encoded);
     }
 

@@ -90,6 +90,14 @@ TEST(SwitchTest, WithoutASwitchTheStreamIsOneOfAnySchedule) {
     EXPECT_TRUE(reading.report.complete);
 }
 
+TEST(SwitchTest, AStreamWithTheHeaderOfAnotherBeginsWithoutItsSwitches) {
+    const SwitchedStream s = switched_stream();
+    StreamHeader header = switching_header();
+    const Packets packets = random_packets(header, 8, 2);
+    header.switches = s.header.switches;
+    EXPECT_EQ(bytes_of(header, packets).bytes, bytes_of(switching_header(), packets).bytes);
+}
+
 TEST(SwitchTest, ASeekKnowsTheSwitchesBefore) {
     const SwitchedStream s = switched_stream();
     const TemporaryFolder folder;
