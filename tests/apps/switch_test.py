@@ -88,6 +88,21 @@ class SwitchTest(ProgramTest):
             self.assertEqual(done.returncode, INPUT, done.stderr)
             self.assertIn("schedule", done.stderr)
 
+    def test_a_rig_with_a_switch_is_refused(self):
+        self.emulate("30:schedule=tiled")
+        (self.folder / "two.toml").write_text('name = "two"\nsensors = ["a", "b"]\na = { share = 0.5 }\n'
+                                              'b = { share = 0.5 }\n')
+        self.succeed("emulate", "light.npy", "-o", "rig", "--rig", "two.toml", "--set", 'rig.a.set=["sensor.bit_depth=16"]')
+        (self.folder / "rig/a.stipple").write_bytes((self.folder / "clip.stipple").read_bytes())
+        text = (self.folder / "rig/rig.toml").read_text()
+        (self.folder / "rig/rig.toml").write_text("".join(line for line in text.splitlines(True) if "sha256" not in line))
+        self.fails(INPUT, ["a.stipple", "its schedule changes at slot 30"], "decode", "rig", "-o", "x.npy")
+        self.fails(INPUT, ["a.stipple", "its schedule changes at slot 30"], "info", "rig")
+
+    def test_a_report_shows_what_comes_before_a_switch(self):
+        self.emulate("30:schedule=tiled")
+        self.succeed("report", "clip.stipple", "-o", "page.html", "--until", "20", "--method", "naive")
+
     def test_what_cannot_be_switched_is_refused(self):
         self.write_flat("light.npy")
         run = ("emulate", "light.npy", "-o", "x.stipple")
