@@ -11,6 +11,7 @@
 #include "apps/arguments/common_options.h"
 #include "apps/arguments/footage.h"
 #include "apps/emulate.h"
+#include "apps/emulate_switch.h"
 #include "apps/interrupt.h"
 #include "apps/output/emulation_text.h"
 #include "apps/output/json_file.h"
@@ -43,14 +44,22 @@ std::unique_ptr<FrameWriter> open_truth(const EmulateArguments& options, FrameSh
     return truth;
 }
 
+/// What takes the frames of the footage.
+struct SlotSink {
+    SensorSwitches& switches;
+    StreamRecorder& recorder;
+    FrameWriter* truth;  ///< null: none
+};
+
 /// True at the end of the footage, false after a signal. \throws Interrupted, InputError without a
 /// slot.
-bool expose_slots(ResampledFootage& slots, StreamRecorder& recorder, FrameWriter* truth,
-                  Progress& progress, const std::string& footage) {
+bool expose_slots(ResampledFootage& slots, const SlotSink& sink, Progress& progress,
+                  const std::string& footage) {
     auto frame = slots.next();
     for (; !frame.empty() && stop_signal() == 0; frame = slots.next()) {
-        recorder.expose(frame);
-        if (truth != nullptr) truth->write(frame);
+        sink.switches.apply(sink.recorder);
+        sink.recorder.expose(frame);
+        if (sink.truth != nullptr) sink.truth->write(frame);
         progress.advance();
     }
     if (progress.done() == 0) {
@@ -64,17 +73,19 @@ void emulate(const EmulateArguments& options, const RunOptions& run) {
     EmulationInput input(options);
     const SensorSetup& setup = input.setup();
     ResampledFootage& slots = input.slots();
+    SensorSwitches switches(options.switches, options.sensor, setup, input.footage().filter());
     JsonFile json(run);
     auto waveform = waveform_file(options.waveform, run.force, setup.timing.has_value());
     const auto truth = open_truth(options, setup.footage, run.force);
     std::optional<AttachedCalibration> calibration;
     if (!options.calibration.empty())
         calibration.emplace(options.calibration, options.output, setup, run);
-    StreamRecorder recorder = open_stream_output(options.output, run, setup,
-                                                 options.source.origin([] { throw_if_stopped(); }));
+    StreamRecorder recorder =
+        open_stream_output(options.output, run, setup,
+                           options.source.origin([] { throw_if_stopped(); }), options.switches);
     Progress progress(run, "emulating", slots.slots());
     const bool at_end =
-        expose_slots(slots, recorder, truth.get(), progress, options.source.footage);
+        expose_slots(slots, {switches, recorder, truth.get()}, progress, options.source.footage);
     if (truth) truth->finish();
     recorder.finish();
     if (calibration) calibration->write();
@@ -85,6 +96,7 @@ void emulate(const EmulateArguments& options, const RunOptions& run) {
                         {0, std::min<std::int64_t>(options.waveform.slots, progress.done())},
                         [] { return stop_signal() == 0; });
     }
+    if (at_end) say_warning(switches.unused_text(options.source.footage));
     if (at_end)
         for (const Message& note : end_notes(options.source.footage, input.footage(), setup.params,
                                              options.source.resampling.has_value()))
@@ -98,7 +110,7 @@ void emulate(const EmulateArguments& options, const RunOptions& run) {
 
 /// A piece is a part of the stream and of nothing else.
 void check_part(const Command& command, const EmulateArguments& arguments) {
-    command.refuse({"--truth", "--vcd", "--vcd-slots", "--calibration"},
+    command.refuse({"--truth", "--vcd", "--vcd-slots", "--calibration", "--switch"},
                    "is of all slots, which a part does not have; leave out one of them");
     check_part_folder(arguments.output);
 }
@@ -109,8 +121,9 @@ void check_rig(const Command& command, const EmulateArguments& options) {
         throw UsageError("--set", "rig." + options.rig_settings.front() +
                                       ": needs --rig; add it, or leave this out");
     if (options.rig.empty()) return;
-    command.refuse({"--sensor", "--schedule", "--seed", "--overrun", "--vcd", "--calibration"},
-                   "is that of one sensor; write it into the file of the rig, or leave it out");
+    command.refuse(
+        {"--sensor", "--schedule", "--seed", "--overrun", "--vcd", "--calibration", "--switch"},
+        "is that of one sensor; write it into the file of the rig, or leave it out");
     command.refuse({"--part"}, "makes pieces of one stream; leave out one of them");
     if (!options.sensor.settings.empty() || !options.sensor.schedule_settings.empty())
         throw UsageError("--set", "changes one sensor; write --set rig.NAME.set=[...]");
@@ -167,6 +180,7 @@ void add_emulate(Command& app, Action& action) {
     add_output(command, options->output, "sample stream", kStreamName);
     add_sensor_arguments(command, options->sensor);
     add_rig(command, *options);
+    add_switches(command, options->switches);
     add_footage_arguments(command, options->source.reading);
     add_part_arguments(command, options->source.reading);
     add_resample_arguments(command, options->source.resampling, options->source.reading);
@@ -195,6 +209,7 @@ void add_emulate(Command& app, Action& action) {
         "  stipple emulate hdr.mp4 -o clip.stipple --transfer auto --resample flow --scale 2\n"
         "  stipple emulate frames/%04d.png -o clip.stipple --schedule tiled \\\n"
         "      --set sensor.read_noise_e=5 --set schedule.tile_rows=8\n"
+        "  stipple emulate scene -o clip.stipple --switch 100:schedule=tiled,seed=2\n"
         "  stipple emulate scene -o tocci --rig tocci2011\n"
         "  stipple emulate film.npy -o pieces --part 3/16");
     set_action(command, action, options, emulate_all_or_part, [command, options] {

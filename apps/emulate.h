@@ -18,6 +18,7 @@ struct EmulateArguments {
     std::string truth;  ///< empty: none
     WaveformOptions waveform;
     SensorChoice sensor;
+    std::vector<std::string> switches;      ///< of the sensor, as SensorSwitches reads them
     std::string calibration;                ///< file of the chip, for the decoder; empty: none
     Shard part;                             ///< of the pieces of the stream
     std::string rig;                        ///< name or file; empty: one sensor

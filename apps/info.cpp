@@ -61,6 +61,7 @@ struct InfoOptions {
 
 void info_stream(const std::string& file, const RunOptions& run) {
     StreamReader reader(file, ReadPolicy::kCounts);
+    reader.follow_switches();
     JsonFile json(run);
     SamplePacket packet;
     StretchedSlots stretched(reader.header(), max_memory(input_bytes(file)));

@@ -23,10 +23,13 @@ std::string bytes_of(const std::string& file, const SensorSetup& setup) {
 }  // namespace
 
 StreamRecorder open_stream_output(const std::filesystem::path& file, const RunOptions& run,
-                                  const SensorSetup& setup, const FootageOrigin& origin) {
+                                  const SensorSetup& setup, const FootageOrigin& origin,
+                                  const std::vector<std::string>& switches) {
     say_leftover(file);
     return StreamRecorder(file, setup,
-                          {.force = run.force, .provenance = provenance_of(setup, origin)});
+                          {.force = run.force,
+                           .may_switch = !switches.empty(),
+                           .provenance = provenance_of(setup, origin, switches)});
 }
 
 AttachedCalibration::AttachedCalibration(const std::string& file, std::filesystem::path stream,

@@ -3,6 +3,7 @@
 #include <filesystem>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "apps/arguments/run_options.h"
 #include "io/pending_output.h"
@@ -11,12 +12,14 @@
 
 namespace stipple {
 
-/// The recorder of a new stream `file`, with the provenance of `setup` and `origin`. Reports
+/// The recorder of a new stream `file`, with the provenance of `setup`, `origin` and the `switches`
+/// of the command line, if the sensor may switch. Reports
 /// leftovers of a killed run on standard error. `setup` must outlive the recorder. \throws
 /// InputError, DeviceError as StreamRecorder.
 [[nodiscard]] StreamRecorder open_stream_output(const std::filesystem::path& file,
                                                 const RunOptions& run, const SensorSetup& setup,
-                                                const FootageOrigin& origin);
+                                                const FootageOrigin& origin,
+                                                const std::vector<std::string>& switches = {});
 
 struct SensorSetup;
 

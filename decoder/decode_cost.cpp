@@ -16,7 +16,30 @@ std::uint64_t largest_tile_sites(FrameShape shape, DecodeMethod method) {
     return static_cast<std::uint64_t>(pixels * shape.planes);
 }
 
+int longest_span_slots(std::span<const RigStream> rig) {
+    int longest = 0;
+    for (const RigStream& stream : rig)
+        longest = std::max(longest, stream.reader.header().schedule.longest_span_slots());
+    return longest;
+}
+
 }  // namespace
+
+std::int64_t max_halo_slots(std::span<const RigStream> rig) {
+    const bool may_switch = rig.front().reader.header().may_switch;
+    return may_switch ? kMaxHaloSlots : halo_slots(longest_span_slots(rig));
+}
+
+std::int64_t halo_at(std::span<const RigStream> rig, std::int64_t core_begin) {
+    const StreamHeader& header = rig.front().reader.header();
+    int longest = longest_span_slots(rig);
+    for (const ScheduleSwitch& part : header.switches) {
+        if (part.slot > core_begin + kCoreSlots + kMaxHaloSlots) break;
+        if (part.slot <= core_begin - kMaxExposureSlots) longest = 0;  // of schedules before
+        longest = std::max(longest, part.longest_span_slots);
+    }
+    return halo_slots(longest);
+}
 
 std::int64_t computed_slots(std::int64_t frames, std::int64_t slots) {
     std::int64_t end = 0;

@@ -7,6 +7,12 @@
 
 namespace stipple {
 
+/// The halo of the block whose core begins at `core_begin`, by the exposures that may reach into
+/// it. Switches of the schedule count up to the last slot that a block may need, whether later ones
+/// are known or not. At most max_halo_slots.
+[[nodiscard]] std::int64_t halo_at(std::span<const RigStream> rig, std::int64_t core_begin);
+[[nodiscard]] std::int64_t max_halo_slots(std::span<const RigStream> rig);
+
 /// Slots that `decode_rig` computes to deliver the first `frames` of `slots`: whole blocks.
 /// Precondition: 0 <= frames <= slots.
 [[nodiscard]] std::int64_t computed_slots(std::int64_t frames, std::int64_t slots);

@@ -86,7 +86,9 @@ void for_each_sensor(Sensors& measurements, const Body& body) {
 
 /// Collects the samples of `window` from packets that may contain more, converted by the response
 /// of each site (pixel_response.h); a site with a defect has none. The variances are those for a
-/// sample equal to its mean. The samples of a mosaic go to the planes of their colours. \throws
+/// sample equal to its mean. The samples of a mosaic go to the planes of their colours. Exposures
+/// under way at a switch of the schedule go across it; those that are unknown there are omitted. If
+/// the values of the readout change in the window, each exposure has its own noise. \throws
 /// InputError if a pixel has more than two exposures at once. Precondition: window.shape.planes ==
 /// decoded_shape(header).planes.
 [[nodiscard]] Measurements collect_measurements(const StreamHeader& header,

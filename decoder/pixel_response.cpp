@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "core/exposure_schedule.h"
+#include "stream/schedule_switch.h"
 
 namespace stipple {
 namespace {
@@ -92,20 +93,24 @@ PixelResponse::PixelResponse(const Calibration& whole, const CalibrationPixel& p
 }
 
 SiteResponses::SiteResponses(const StreamHeader& header)
-    : header_(header), pixels_(header.calibration) {
+    : SiteResponses(header, readout_values(header.calibration)) {}
+
+SiteResponses::SiteResponses(const StreamHeader& header, const ReadoutValues& values)
+    : header_(&header), pixels_(with_values(header.calibration, values)) {
     if (!header.response.linear_dn.empty()) curve_.emplace(header.response);
 }
 
 PixelResponse SiteResponses::at(int plane, int row, int col) const {
-    if (header_.sites.empty()) return pixels_.at(row, col);
-    const FrameShape shape = header_.shape;
+    const StreamHeader& header = *header_;
+    if (header.sites.empty()) return pixels_.at(row, col);
+    const FrameShape shape = header.shape;
     const SiteCalibration& site =
-        header_.sites[index(plane) * shape.pixels() + row_major(row, col, shape.cols)];
-    const CalibrationTile& tile = header_.calibration.tile;
+        header.sites[index(plane) * shape.pixels() + row_major(row, col, shape.cols)];
+    const CalibrationTile& tile = header.calibration.tile;
     const CalibrationPixel pixel =
         tile.pixels.empty() ? CalibrationPixel{}
                             : tile.pixels[row_major(row % tile.rows, col % tile.cols, tile.cols)];
-    return {header_.calibration, pixel, site, header_.slot_us * 1e-6, curve_ ? &*curve_ : nullptr};
+    return {header.calibration, pixel, site, header.slot_us * 1e-6, curve_ ? &*curve_ : nullptr};
 }
 
 PixelResponses::PixelResponses(const Calibration& calibration) {
@@ -121,11 +126,17 @@ PixelResponses::PixelResponses(const Calibration& calibration) {
 
 void SaturatedSamples::add(const SamplePacket& packet) {
     if (packet.dn.empty()) return;  // dropped
+    const SchedulePart part = schedule_at(header_, packet.slot);
+    if (part.first_slot != part_begin_) {
+        part_begin_ = part.first_slot;
+        responses_.emplace(header_, readout_values(calibration_at(header_, part_begin_)));
+    }
+    const std::int64_t slot = readout_slot(part, packet.slot);
     const std::uint16_t* dn = packet.dn.data();
     for (int row = packet.first_row; row < packet.first_row + packet.rows; ++row)
-        for_each_readout(header_.schedule, packet.slot, row, header_.shape.cols, [&](int col, int) {
+        for_each_readout(*part.schedule, slot, row, header_.shape.cols, [&](int col, int) {
             for (int plane = 0; plane < header_.shape.planes; ++plane)
-                if (responses_.at(plane, row, col).saturated(*dn++)) ++saturated_;
+                if (responses_->at(plane, row, col).saturated(*dn++)) ++saturated_;
         });
     zeros_ += static_cast<std::uint64_t>(std::ranges::count(packet.dn, 0));
     samples_ += packet.dn.size();

@@ -121,11 +121,13 @@ class SiteResponses {
   public:
     /// `header` must outlive this.
     explicit SiteResponses(const StreamHeader& header);
+    /// With other values of the readout, which a header with a calibration of the sites has not.
+    SiteResponses(const StreamHeader& header, const ReadoutValues& values);
 
     [[nodiscard]] PixelResponse at(int plane, int row, int col) const;
 
   private:
-    const StreamHeader& header_;
+    const StreamHeader* header_;
     PixelResponses pixels_;
     std::optional<ResponseCurve> curve_;  ///< none: linear
 };
@@ -133,6 +135,7 @@ class SiteResponses {
 /// Counts the samples of packets that are only a lower bound (PixelResponse), and those at DN 0.
 class SaturatedSamples {
   public:
+    /// `header` must outlive this; packets come by slot.
     explicit SaturatedSamples(const StreamHeader& header) : header_(header), responses_(header) {}
 
     void add(const SamplePacket& packet);
@@ -143,7 +146,8 @@ class SaturatedSamples {
 
   private:
     const StreamHeader& header_;
-    SiteResponses responses_;
+    std::optional<SiteResponses> responses_;
+    std::int64_t part_begin_ = 0;  ///< first slot of these responses
     std::uint64_t samples_ = 0;
     std::uint64_t saturated_ = 0;
     std::uint64_t zeros_ = 0;

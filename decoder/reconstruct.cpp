@@ -222,7 +222,7 @@ Block decode_slots(std::span<const SensorSamples> sensors, const DecodeOptions& 
     FluxVideo video(static_cast<int>(slots.core_end - slots.core_begin), shape);
     const auto in_block = [&](const SensorSamples& sensor) { return has_samples(sensor, slots); };
     if (std::ranges::none_of(sensors, in_block)) return video;  // a long gap: nothing is known
-    const Calibration calibration = joint_calibration(sensors);
+    const Calibration calibration = joint_calibration(sensors, slots.begin);
     const std::vector<Tile> tiles = frame_tiles(shape, named(options.method).max_tile_sites);
     StageRelay stages(options.stages, shape, slots);
     for (std::size_t i = 0; i < tiles.size(); ++i) {
@@ -277,11 +277,12 @@ void check_block(std::span<const RigStream> rig, const DecodeOptions& options,
                  small ? reader.input_bytes() : kEndlessInput);
 }
 
-int longest_span_slots(std::span<const RigStream> rig) {
-    int longest = 0;
-    for (const RigStream& stream : rig)
-        longest = std::max(longest, stream.reader.header().schedule.longest_span_slots());
-    return longest;
+/// \throws InputError if a method that asks for a certain schedule meets a switch.
+void check_switches(const StreamReader& reader, const NamedDecodeMethod& method) {
+    if (method.check_schedule == nullptr || reader.header().switches.empty()) return;
+    throw InputError(reader.name(),
+                     fmt::format("its schedule changes at slot {}, but method {} decodes one",
+                                 reader.header().switches.front().slot, method.name));
 }
 
 /// \throws InputError if a sensor cannot be decoded with the first one.
@@ -347,14 +348,17 @@ DecodeReport decode_rig(std::span<const RigStream> rig, const DecodeOptions& opt
                         const FrameSink& sink, const ProgressCallback& progress) {
     const auto begin = std::chrono::steady_clock::now();
     check_rig(rig, options);
-    const StreamReader& reader = rig.front().reader;
-    const std::int64_t halo = halo_slots(longest_span_slots(rig));
-    const std::int64_t first_packet = std::max<std::int64_t>(options.first_slot - halo, 0);
+    StreamReader& reader = rig.front().reader;
+    if (rig.size() == 1) reader.follow_switches();
+    const std::int64_t max_halo = max_halo_slots(rig);
+    const std::int64_t first_packet = std::max<std::int64_t>(options.first_slot - max_halo, 0);
     RigBuffer buffer(rig, options, first_packet);
     DecodeReport report;
     std::int64_t next = options.first_slot;
     for (bool more = true; more;) {
-        buffer.read_up_to(next + kCoreSlots + std::max(kRemainderSlots, halo));
+        buffer.read_up_to(next + kCoreSlots + std::max(kRemainderSlots, max_halo));
+        check_switches(reader, named(options.method));
+        const std::int64_t halo = halo_at(rig, next);
         const HaloRange slots = slot_range(next, buffer.first().slots(), halo);
         if (slots.core_end <= slots.core_begin) break;
         check_proportion(reader, options, slots.core_end - first_packet,

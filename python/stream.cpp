@@ -26,6 +26,13 @@ py::dict counts_of(const StreamFile& stream) {
     });
 }
 
+const ExposureSchedule& only_schedule(const StreamFile& stream) {
+    if (stream.header().may_switch)
+        throw InputError(stream.name(),
+                         "may change its schedule; samples tells the exposure of each sample");
+    return stream.header().schedule;
+}
+
 std::string repr_of(StreamFile& stream) {
     const std::string name = stream.is_temporary() ? "(temporary)" : stream.path().string();
     if (!stream.is_open()) return fmt::format("<stipple.Stream {}: closed>", name);
@@ -108,11 +115,11 @@ void bind_stream(py::module_& module) {
             "What \"stipple emulate\" says of it (docs/outputs.md), or None of a "
             "stream that was opened.")
         .def(
-            "exposures",
-            [](const StreamFile& self) { return exposures_of(self.header().schedule); },
-            "The exposures of its schedule, as Schedule.exposures().")
+            "exposures", [](const StreamFile& self) { return exposures_of(only_schedule(self)); },
+            "The exposures of its schedule, as Schedule.exposures(). Raises ValueError if it may "
+            "change.")
         .def(
-            "weights", [](const StreamFile& self) { return weights_of(self.header().schedule); },
+            "weights", [](const StreamFile& self) { return weights_of(only_schedule(self)); },
             "The weights of its schedule, as Schedule.weights().")
         .def("slots", &StreamFile::slots, "Number of slots. Reads an interrupted stream through.")
         .def("samples", &StreamFile::samples, py::arg("slot"),

@@ -2,6 +2,7 @@
 #include <fmt/format.h>
 #include <unistd.h>
 
+#include <bit>
 #include <cerrno>
 #include <cstdlib>
 #include <fstream>
@@ -15,6 +16,7 @@
 #include "python/call_progress.h"
 #include "python/errors.h"
 #include "python/stream.h"
+#include "stream/schedule_switch.h"
 
 namespace stipple::python {
 namespace fs = std::filesystem;
@@ -29,13 +31,27 @@ struct SampleRow {
     std::uint16_t dn;
 };
 
+/// What a pixel has collected that is due after a switch; 0 slots if that is unknown.
+DuePixel across_switches(std::span<const SchedulePart> parts, const PixelSlot& at, DuePixel pixel) {
+    const auto read = read_exposure(parts, at);
+    const std::uint64_t open_slots = read ? read->open_slots : 0;
+    pixel.span_slots = static_cast<std::uint8_t>(std::bit_width(open_slots));
+    pixel.light_slots = static_cast<std::uint8_t>(std::popcount(open_slots));
+    return pixel;
+}
+
 void add_rows(const SamplePacket& packet, const StreamHeader& header,
               std::vector<SampleRow>& rows) {
     auto dn = packet.dn.begin();
     if (packet.dn.empty()) return;
+    const auto parts = schedule_parts(header);
+    const SchedulePart part = schedule_at(header, packet.slot);
+    const std::int64_t slot = readout_slot(part, packet.slot);
     for (int row = packet.first_row; row < packet.first_row + packet.rows; ++row)
-        visit_due_pixels(header.schedule, packet.slot, row, header.shape.cols,
-                         [&](int col, const DuePixel& pixel) {
+        visit_due_pixels(*part.schedule, slot, row, header.shape.cols,
+                         [&](int col, DuePixel pixel) {
+                             if (part.first_slot > 0)
+                                 pixel = across_switches(parts, {packet.slot, row, col}, pixel);
                              for (int plane = 0; plane < header.shape.planes; ++plane)
                                  rows.push_back({static_cast<std::uint16_t>(row),
                                                  static_cast<std::uint16_t>(col),
@@ -75,14 +91,18 @@ StreamFile::StreamFile(fs::path file, py::object figures)
     : is_temporary_(false),
       path_(std::move(file)),
       figures_(std::move(figures)),
-      reader_(reading(path_, [&] { return StreamReader(path_); })) {}
+      reader_(reading(path_, [&] { return StreamReader(path_); })) {
+    reader_->follow_switches();
+}
 
 StreamFile::StreamFile(std::unique_ptr<TemporaryFile> file, py::object figures)
     : temporary_(std::move(file)),
       is_temporary_(true),
       path_(temporary_->path()),
       figures_(std::move(figures)),
-      reader_(path_) {}
+      reader_(path_) {
+    reader_->follow_switches();
+}
 
 fs::path StreamFile::saved_path() const {
     if (is_temporary_)
@@ -106,6 +126,7 @@ StreamReader StreamFile::reader(ReadPolicy policy) const {
     static_cast<void>(opened());
     StreamReader reader = reading(path_, [&] { return StreamReader(path_, policy); });
     reader.use_name(name());
+    reader.follow_switches();
     return reader;
 }
 

@@ -113,20 +113,21 @@ Calibration calibration_of(const SensorParams& params) {
 
 struct CodedSensor::Impl {
     Impl(const SensorParams& params, FrameShape frame_shape, const ExposureSchedule& schedule,
-         std::uint64_t seed)
-        : array(params, seed),
+         std::uint64_t noise_seed)
+        : array(params, noise_seed),
           adc(params),
           sequencer(checked(schedule, params), frame_shape),
           shape(frame_shape),
+          seed(noise_seed),
           stores(schedule.charge_stores()) {
         check(shape);
         light.resize(shape.sites() * static_cast<std::size_t>(stores));
-        if (params.mode == SensorMode::kPhysical) set_up_physical(params, schedule, seed);
+        if (params.mode == SensorMode::kPhysical) set_up_physical(params, schedule);
         bands.resize(static_cast<std::size_t>((shape.rows + kBandRows - 1) / kBandRows));
     }
 
-    void set_up_physical(const SensorParams& params, const ExposureSchedule& schedule,
-                         std::uint64_t seed);
+    void set_up_physical(const SensorParams& params, const ExposureSchedule& schedule);
+    void switch_to(const SensorParams& params, const ExposureSchedule& schedule);
     [[nodiscard]] std::span<const float> light_of_slot(std::span<const float> frame);
     void find_overflow(std::span<const float> arriving, int row, Band& band);
     void store_lag(std::uint32_t plane, Band& band);
@@ -147,6 +148,7 @@ struct CodedSensor::Impl {
     ColumnAdc adc;
     Sequencer sequencer;
     FrameShape shape;
+    std::uint64_t seed;
     int stores;                ///< charge stores that the schedule uses, 1 or 2
     std::vector<float> light;  ///< collected since the exposure began, (store, plane, row, col)
     std::vector<Band> bands;
@@ -154,7 +156,7 @@ struct CodedSensor::Impl {
 };
 
 void CodedSensor::Impl::set_up_physical(const SensorParams& params,
-                                        const ExposureSchedule& schedule, std::uint64_t seed) {
+                                        const ExposureSchedule& schedule) {
     const PhysicalTerms& terms = params.physical;
     physical.emplace(params, shape, seed);
     lag = static_cast<float>(terms.lag);
@@ -163,6 +165,16 @@ void CodedSensor::Impl::set_up_physical(const SensorParams& params,
         parasitic = static_cast<float>(terms.parasitic_light_sensitivity);
     if (SlotLight::changes(terms)) slot_light.emplace(terms, shape);
     if (terms.blooming != 0) overflow.resize(shape.sites());
+}
+
+void CodedSensor::Impl::switch_to(const SensorParams& params, const ExposureSchedule& schedule) {
+    PixelArray next(params, seed);
+    sequencer.switch_to(checked(schedule, params), stats.slots);
+    array = next;
+    adc = ColumnAdc(params);
+    if (physical) physical.emplace(params, shape, seed);
+    if (physical && schedule.light_throughput() < 1)
+        parasitic = static_cast<float>(params.physical.parasitic_light_sensitivity);
 }
 
 /// The light of this slot that overflows in the pixels of one row: what comes when the well of the
@@ -298,6 +310,10 @@ CodedSensor::CodedSensor(const SensorParams& params, FrameShape shape,
 CodedSensor::~CodedSensor() = default;
 CodedSensor::CodedSensor(CodedSensor&&) noexcept = default;
 CodedSensor& CodedSensor::operator=(CodedSensor&&) noexcept = default;
+
+void CodedSensor::switch_to(const SensorParams& params, const ExposureSchedule& schedule) {
+    impl_->switch_to(params, schedule);
+}
 
 void CodedSensor::expose(std::span<const float> frame, SamplePacket& packet) {
     assert(frame.size() == impl_->shape.sites());

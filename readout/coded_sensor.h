@@ -36,6 +36,12 @@ class CodedSensor {
     CodedSensor(CodedSensor&&) noexcept;
     CodedSensor& operator=(CodedSensor&&) noexcept;
 
+    /// From the next slot on the sensor has another schedule and other values of its readout: those
+    /// of `params` that are in a ReadoutValues; all others must be as before. Nothing is reset.
+    /// `schedule` must outlive the sensor. Precondition: no schedule has weights or interleaved
+    /// exposures; the next slot is not the first one. \throws InputError as the constructor.
+    void switch_to(const SensorParams& params, const ExposureSchedule& schedule);
+
     /// Exposes the next slot to `frame` (order (plane, row, col), units of FluxVideo) and fills
     /// `packet` with the samples that are due at its end. The same bits for any thread count.
     /// Precondition: frame.size() == shape.sites(), light >= 0 and not NaN.

@@ -1,7 +1,10 @@
 #include "readout/emulator.h"
 
 #include <fmt/format.h>
+
 #include <algorithm>
+#include <limits>
+#include <string_view>
 #include <utility>
 
 #include "core/error.h"
@@ -10,6 +13,7 @@
 #include "readout/light_throughput.h"
 #include "readout/sensor_file.h"
 #include "sensor_model/slot_light.h"
+#include "stream/schedule_switch.h"
 
 namespace stipple {
 namespace {
@@ -43,12 +47,19 @@ StreamHeader stream_header_of(const SensorSetup& setup, std::string provenance) 
 
 Emulator::Emulator(const SensorSetup& setup, std::int64_t first_slot)
     : setup_(setup),
+      schedule_(&setup.schedule.schedule),
       filters_(calibration_of(setup.params).tile),
       sensor_(setup.params, setup.shape, setup.schedule.schedule, setup.seed, first_slot) {
     if (!setup.timing) return;
     const SlotBudget budget{slot_clocks(*setup.timing, setup.params.slot_us), setup.overrun};
     readout_cost_.emplace(*setup.timing, setup.schedule.schedule, setup.shape, budget);
     readout_cost_->begin_at(first_slot);
+}
+
+void Emulator::switch_to(const SensorSetup& next) {
+    check_switch(setup_, next, stats().slots);
+    sensor_.switch_to(next.params, next.schedule.schedule);
+    schedule_ = &next.schedule.schedule;
 }
 
 /// Behind colour filters and a grey mask.
@@ -59,7 +70,7 @@ std::span<const float> Emulator::light_on_pixels(std::span<const float> frame) {
         take_mosaic(filter, setup_.footage, frame, mosaic_);
         frame = mosaic_;
     }
-    const ExposureSchedule& schedule = setup_.schedule.schedule;
+    const ExposureSchedule& schedule = *schedule_;
     if (schedule.weighted()) {
         masked_.resize(setup_.shape.sites());
         mask(schedule, stats().slots, setup_.shape, frame, masked_);
@@ -78,16 +89,18 @@ const SamplePacket& Emulator::expose_unread(std::span<const float> frame) {
     const std::int64_t slot = stats().slots;
     sensor_.expose_unread(light_on_pixels(frame));
     if (readout_cost_) readout_cost_->add_next();
-    ++unread_[kind_of_slot(setup_.schedule.schedule, slot)];
+    ++unread_[kind_of_slot(*schedule_, slot)];
     packets_[0] = {slot, 0, setup_.shape.rows, SamplePacket::kDropped, {}};
     return packets_[0];
 }
 
 double Emulator::light_throughput() const {
+    if (switched()) return std::numeric_limits<double>::quiet_NaN();
     return stipple::light_throughput(setup_.schedule.schedule, filters_, setup_.shape);
 }
 
 double Emulator::light_read() const {
+    if (switched()) return std::numeric_limits<double>::quiet_NaN();
     const ExposureSchedule& schedule = setup_.schedule.schedule;
     const FrameShape& shape = setup_.shape;
     double light = light_due_in_clip(schedule, filters_, shape, stats().slots) - dropped_light_;
@@ -109,6 +122,38 @@ std::span<const SamplePacket> Emulator::split_at_overrun(const SlotCost& slot) {
     whole.rows = slot.end_row;
     whole.dn.resize(slot.counts.samples);
     return std::span(packets_).subspan(whole.rows > 0 ? 0 : 1);
+}
+
+void check_switch(const SensorSetup& from, const SensorSetup& to, std::int64_t slot) {
+    const auto refuse = [&](std::string_view why) {
+        throw InputError(fmt::format("switch at slot {}", slot), why);
+    };
+    if (from.timing || to.timing)
+        refuse(
+            "the sensor has a section [timing]; the readout of a schedule that changes is not "
+            "modelled");
+    for (const SensorSetup* setup : {&from, &to})
+        if (setup->schedule.schedule.weighted() || setup->schedule.schedule.interleaved())
+            refuse(fmt::format("the schedule {} has weights or interleaved exposures",
+                               setup->schedule.name));
+    SensorParams same = to.params;
+    same.rounding = from.params.rounding;
+    same.full_scale_e = from.params.full_scale_e;
+    same.full_well_e = from.params.full_well_e;
+    same.read_noise_e = from.params.read_noise_e;
+    same.photons_per_unit = from.params.photons_per_unit;
+    same.physical.black_level_dn = from.params.physical.black_level_dn;
+    if (same != from.params || from.shape != to.shape || from.footage != to.footage)
+        refuse(
+            "only schedule, seed, rounding, full_scale_e, full_well_e, read_noise_e, "
+            "photons_per_unit and black_level_dn may change");
+}
+
+ScheduleSwitch switch_of(const SensorSetup& to) {
+    return {.schedule = to.schedule.schedule,
+            .source = to.schedule.source,
+            .name = to.schedule.name,
+            .values = readout_values(calibration_of(to.params))};
 }
 
 std::int64_t lead_in_slots(const SensorSetup& setup) {

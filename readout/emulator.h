@@ -27,6 +27,11 @@ class Emulator {
     /// exposures that began earlier lack light (lead_in_slots).
     explicit Emulator(const SensorSetup& setup, std::int64_t first_slot = 0);
 
+    /// From the next slot on the sensor has the schedule of `next`, which must outlive the
+    /// emulator, and the values of its readout. Fixed patterns and noise remain those of the first
+    /// setup. \throws InputError as check_switch.
+    void switch_to(const SensorSetup& next);
+
     /// Exposes the next slot to `frame` (of the footage's shape, order (plane, row, col)), behind
     /// the grey mask of the slot if the schedule has weights: its photons are counted. The
     /// packets of the slot, valid until the next call: one, or two if the last rows do not fit the
@@ -37,14 +42,15 @@ class Emulator {
     [[nodiscard]] const SamplePacket& expose_unread(std::span<const float> frame);
 
     [[nodiscard]] const SensorSetup& setup() const { return setup_; }
+    [[nodiscard]] bool switched() const { return schedule_ != &setup_.schedule.schedule; }
     /// Transmittances of the filters before the pixels, as responsivities; empty if there are none.
     [[nodiscard]] const CalibrationTile& filters() const { return filters_; }
     [[nodiscard]] const ReadoutStats& stats() const { return sensor_.stats(); }
-    /// Fraction of the light that is collected in steady slots.
+    /// Fraction of the light that is collected in steady slots; NaN after a switch.
     [[nodiscard]] double light_throughput() const;
     /// Fraction of the light on the array since slot 0 that the samples hold. Less than the light
     /// throughput by exposures that began before slot 0, exposures under way, and dropped rows. NaN
-    /// before slot 0. Precondition: the first slot was 0.
+    /// before slot 0 and after a switch. Precondition: the first slot was 0.
     [[nodiscard]] double light_read() const;
     /// Of the readout; null if the sensor has no timing.
     [[nodiscard]] const ReadoutCost* readout_cost() const {
@@ -56,6 +62,7 @@ class Emulator {
     [[nodiscard]] std::span<const SamplePacket> split_at_overrun(const SlotCost& slot);
 
     const SensorSetup& setup_;
+    const ExposureSchedule* schedule_;  ///< of the last switch, or of the setup
     CalibrationTile filters_;
     CodedSensor sensor_;
     std::optional<ReadoutCost> readout_cost_;
@@ -66,7 +73,13 @@ class Emulator {
     std::vector<float> masked_;           ///< light behind a grey mask
 };
 
-struct SensorSetup;
+/// \throws InputError if a sensor cannot switch from one setup to the other between two slots: it
+/// has a section [timing], a schedule has weights or interleaved exposures, or other parameters
+/// differ than those of ReadoutValues. `slot` is for the message.
+void check_switch(const SensorSetup& from, const SensorSetup& to, std::int64_t slot);
+
+/// What such a switch is in a stream; its slot and number are set by the StreamWriter.
+[[nodiscard]] ScheduleSwitch switch_of(const SensorSetup& to);
 
 /// Slots that a sensor must be exposed after a reset until its samples are those of a sensor that
 /// was exposed since slot 0, bit by bit (docs/scaling.md). `--part` of `emulate` emulates so many

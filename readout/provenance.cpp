@@ -81,7 +81,7 @@ toml::table footage_table(const FootageOrigin& footage) {
 }
 
 /// The options of `emulate` that name the files of sensor and schedule, and change their keys.
-toml::table options_table(const SensorSetup& setup) {
+toml::table options_table(const SensorSetup& setup, const std::vector<std::string>& switches) {
     toml::table options;
     toml::array settings;
     const auto add = [&](const std::string& option, const std::optional<ConfigOrigin>& origin) {
@@ -93,6 +93,10 @@ toml::table options_table(const SensorSetup& setup) {
     add("sensor", setup.origin);
     add("schedule", setup.schedule.origin);
     options.insert("set", settings);
+    if (switches.empty()) return options;
+    toml::array texts;
+    for (const std::string& text : switches) texts.push_back(text);
+    options.insert("switch", texts);
     return options;
 }
 
@@ -142,9 +146,10 @@ std::string options_of(const toml::table& provenance) {
     if (const auto it = text_of(options["sensor"]); it != defaults.sensor) add("--sensor", it);
     if (const auto it = text_of(options["schedule"]); it != defaults.schedule)
         add("--schedule", it);
-    if (const auto* settings = options["set"].as_array())
-        for (const toml::node& setting : *settings)
-            add("--set", setting.value<std::string>().value_or(""));
+    for (const char* const list : {"set", "switch"})
+        if (const auto* settings = options[list].as_array())
+            for (const toml::node& setting : *settings)
+                add(fmt::format("--{}", list), setting.value<std::string>().value_or(""));
     const auto seed = provenance["seed"];
     const auto number = seed.value_exact<std::int64_t>();  // not of floating point
     if (const auto it = number ? std::to_string(*number) : text_of(seed); it != "1")
@@ -165,13 +170,12 @@ toml::table table_of(const std::string& provenance) {
 
 }  // namespace
 
-std::string provenance_of(const SensorSetup& setup, const FootageOrigin& footage) {
-    toml::table text{{"emulator", fmt::format("stipple {}", version())},
-                     {"footage", footage_table(footage)},
-                     {"options", options_table(setup)},
-                     {"overrun", name_of(setup.overrun)},
-                     {"schedule", schedule_table(setup.schedule)},
-                     {"sensor", sensor_table(setup)}};
+std::string provenance_of(const SensorSetup& setup, const FootageOrigin& footage,
+                          const std::vector<std::string>& switches) {
+    toml::table text{
+        {"emulator", fmt::format("stipple {}", version())}, {"footage", footage_table(footage)},
+        {"options", options_table(setup, switches)},        {"overrun", name_of(setup.overrun)},
+        {"schedule", schedule_table(setup.schedule)},       {"sensor", sensor_table(setup)}};
     // TOML integers are signed, seeds are not.
     if (setup.seed <= std::numeric_limits<std::int64_t>::max())
         text.insert("seed", static_cast<std::int64_t>(setup.seed));

@@ -24,7 +24,9 @@ struct FootageOrigin {
 
 /// The provenance in a stream header (TOML, docs/stream_format.md): everything that determines the
 /// bytes of the stream. Without times and folders, so that the same run gives the same bytes.
-[[nodiscard]] std::string provenance_of(const SensorSetup& setup, const FootageOrigin& footage);
+/// `switches`: options `--switch` of `emulate`.
+[[nodiscard]] std::string provenance_of(const SensorSetup& setup, const FootageOrigin& footage,
+                                        const std::vector<std::string>& switches = {});
 
 /// The command that makes the same stream again in the folder of its footage. Empty if there is
 /// none: of light without files, and of a sensor or schedule made in code. Quoted for a shell and

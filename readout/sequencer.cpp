@@ -1,6 +1,7 @@
 #include "readout/sequencer.h"
 
 #include <algorithm>
+#include <bit>
 #include <cassert>
 
 #include "core/error.h"
@@ -50,26 +51,33 @@ std::uint8_t open_store(const ExposureSchedule& schedule, std::int64_t slot, Til
 }  // namespace
 
 Sequencer::Sequencer(const ExposureSchedule& schedule, FrameShape shape)
-    : schedule_(&schedule), cols_(shape.cols), gapless_(schedule.gapless()) {
+    : parts_{{&schedule}}, cols_(shape.cols), gapless_(schedule.gapless()) {
     assert(schedule.charge_stores() <= 2);
 }
 
+void Sequencer::switch_to(const ExposureSchedule& next, std::int64_t slot) {
+    assert(slot > parts_.back().first_slot && !next.interleaved() && !schedule().interleaved());
+    parts_.push_back({&next, slot});
+    gapless_ = next.gapless();
+}
+
 bool Sequencer::all_open(std::int64_t slot) const noexcept {
-    return gapless_ && slot + 1 >= schedule_->longest_span_slots();
+    return gapless_ && readout_slot(parts_.back(), slot) + 1 >= schedule().longest_span_slots();
 }
 
 void Sequencer::list_open(std::int64_t slot, int row, std::span<std::uint8_t> open) const noexcept {
     assert(open.size() == static_cast<std::size_t>(cols_));
-    const int tile_row = row % schedule_->tile_rows();
-    const auto once = static_cast<std::size_t>(std::min(cols_, schedule_->tile_cols()));
-    const int period = schedule_->period_slots();
+    slot = readout_slot(parts_.back(), slot);
+    const int tile_row = row % schedule().tile_rows();
+    const auto once = static_cast<std::size_t>(std::min(cols_, schedule().tile_cols()));
+    const int period = schedule().period_slots();
     const bool at_first = gapless_ && slot < period;
-    const bool interleaved = schedule_->interleaved();
+    const bool interleaved = schedule().interleaved();
     for (std::size_t i = 0; i < once; ++i) {
         const auto col = static_cast<int>(i);
-        const auto exposures = schedule_->exposures(tile_row, col);
+        const auto exposures = schedule().exposures(tile_row, col);
         if (interleaved)
-            open[i] = open_store(*schedule_, slot, {tile_row, col});
+            open[i] = open_store(schedule(), slot, {tile_row, col});
         else
             open[i] =
                 at_first ? is_open_at_first(exposures, slot) : is_open(exposures, slot, period);
@@ -79,23 +87,31 @@ void Sequencer::list_open(std::int64_t slot, int row, std::span<std::uint8_t> op
 
 void Sequencer::append_due(std::int64_t slot, int row, std::vector<std::uint32_t>& pixels) const {
     const auto first = static_cast<std::uint32_t>(row) * static_cast<std::uint32_t>(cols_);
-    for_each_readout(*schedule_, slot, row, cols_, [&](int col, int) {
+    for_each_readout(schedule(), readout_slot(parts_.back(), slot), row, cols_, [&](int col, int) {
         pixels.push_back(first + static_cast<std::uint32_t>(col));
     });
 }
 
 void Sequencer::append_stores(std::int64_t slot, int row, std::vector<std::uint8_t>& stores) const {
-    const int tile_row = row % schedule_->tile_rows();
-    for_each_readout(*schedule_, slot, row, cols_, [&](int col, int) {
-        const TilePixel pixel{tile_row, col % schedule_->tile_cols()};
-        stores.push_back(static_cast<std::uint8_t>(open_store(*schedule_, slot, pixel) - 1));
+    const int tile_row = row % schedule().tile_rows();
+    for_each_readout(schedule(), slot, row, cols_, [&](int col, int) {
+        const TilePixel pixel{tile_row, col % schedule().tile_cols()};
+        stores.push_back(static_cast<std::uint8_t>(open_store(schedule(), slot, pixel) - 1));
     });
 }
 
 void Sequencer::append_open_slots(std::int64_t slot, int row,
                                   std::vector<std::uint16_t>& slots) const {
-    visit_due_pixels(*schedule_, slot, row, cols_,
-                     [&](int, const DuePixel& pixel) { slots.push_back(pixel.light_slots); });
+    const SchedulePart& part = parts_.back();
+    const bool across = part.first_slot > 0 && slot < part.first_slot + schedule().period_slots();
+    visit_due_pixels(schedule(), readout_slot(part, slot), row, cols_,
+                     [&](int col, const DuePixel& pixel) {
+                         int open = pixel.light_slots;
+                         if (across)
+                             if (const auto read = read_exposure(parts_, {slot, row, col}))
+                                 open = std::popcount(read->open_slots);
+                         slots.push_back(static_cast<std::uint16_t>(open));
+                     });
 }
 
 }  // namespace stipple

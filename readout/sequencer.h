@@ -6,6 +6,7 @@
 
 #include "core/exposure_schedule.h"
 #include "core/geometry.h"
+#include "core/schedule_parts.h"
 
 namespace stipple {
 
@@ -15,6 +16,11 @@ class Sequencer {
   public:
     /// `schedule` must outlive the sequencer. Precondition: it needs at most two charge stores.
     Sequencer(const ExposureSchedule& schedule, FrameShape shape);
+
+    /// From `slot` on it follows another schedule, which must outlive the sequencer; exposures
+    /// under way go on (schedule_parts.h). Precondition: neither schedule has interleaved
+    /// exposures; slots of switches rise from 1 on.
+    void switch_to(const ExposureSchedule& schedule, std::int64_t slot);
 
     /// True if all pixels collect light in this slot, in exposures that began in slot 0 or later.
     [[nodiscard]] bool all_open(std::int64_t slot) const noexcept;
@@ -35,7 +41,11 @@ class Sequencer {
     void append_open_slots(std::int64_t slot, int row, std::vector<std::uint16_t>& slots) const;
 
   private:
-    const ExposureSchedule* schedule_;
+    [[nodiscard]] const ExposureSchedule& schedule() const noexcept {
+        return *parts_.back().schedule;
+    }
+
+    std::vector<SchedulePart> parts_;
     int cols_;
     bool gapless_;
 };

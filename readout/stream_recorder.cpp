@@ -3,15 +3,29 @@
 #include <utility>
 
 namespace stipple {
+namespace {
+
+StreamHeader header_of(const SensorSetup& setup, StreamRecorderOptions& options) {
+    StreamHeader header = stream_header_of(setup, std::move(options.provenance));
+    header.may_switch = options.may_switch;
+    return header;
+}
+
+}  // namespace
 
 StreamRecorder::StreamRecorder(const std::filesystem::path& file, const SensorSetup& setup,
                                StreamRecorderOptions options)
     : output_(file, options.force),
       emulator_(std::make_unique<Emulator>(setup)),
-      writer_(output_.partial(), stream_header_of(setup, std::move(options.provenance)),
-              output_.final_path().string()) {}
+      writer_(output_.partial(), header_of(setup, options), output_.final_path().string()) {}
 
 StreamRecorder::~StreamRecorder() = default;
+
+void StreamRecorder::switch_to(const SensorSetup& next) {
+    check_switch(emulator_->setup(), next, emulator_->stats().slots);
+    writer_.switch_schedule(switch_of(next));
+    emulator_->switch_to(next);
+}
 
 std::span<const SamplePacket> StreamRecorder::expose(std::span<const float> frame) {
     const auto packets = emulator_->expose(frame);

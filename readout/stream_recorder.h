@@ -14,6 +14,7 @@ namespace stipple {
 
 struct StreamRecorderOptions {
     bool force = false;           ///< replace the file if it exists
+    bool may_switch = false;      ///< the stream may change its schedule (version 4)
     std::string provenance = {};  ///< text of the header, as `provenance_of` writes it; empty: none
 };
 
@@ -26,6 +27,11 @@ class StreamRecorder {
     StreamRecorder(const std::filesystem::path& file, const SensorSetup& setup,
                    StreamRecorderOptions options = {});
     ~StreamRecorder();
+
+    /// As Emulator::switch_to, in the stream, too. Precondition: options.may_switch, and a slot was
+    /// exposed. \throws InputError as Emulator::switch_to and StreamWriter::switch_schedule: then
+    /// it goes on as before. DeviceError.
+    void switch_to(const SensorSetup& next);
 
     /// Exposes the next slot to `frame` (of the footage's shape, order (plane, row, col)) and
     /// writes its samples, without those of dropped rows.

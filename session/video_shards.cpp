@@ -64,6 +64,7 @@ DecodingIdentity from_json(const nlohmann::ordered_json& json, const fs::path& f
 /// The slots of a stream, by its index or else by its packets.
 std::int64_t slots_of(const fs::path& file, const std::function<void()>& check) {
     StreamReader reader(file, ReadPolicy::kCounts);
+    reader.follow_switches();
     if (!reader.slots())
         for (SamplePacket packet; reader.next(packet);) check();
     const std::int64_t slots = reader.slots().value_or(reader.report().slots);

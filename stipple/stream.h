@@ -10,6 +10,8 @@
 ///               << stream.report().damage.size() << " damaged places\n";
 ///
 /// for_each_readout tells the pixel and the exposure of each sample; StreamWriter writes a stream.
+/// A stream of version 4 may change its schedule: follow_switches, and schedule_switch.h.
+#include "stream/schedule_switch.h"
 #include "stream/stream_figures.h"
 #include "stream/stream_reader.h"
 #include "stream/stream_writer.h"

@@ -4,6 +4,7 @@
 #include <span>
 
 #include "core/index.h"
+#include "stream/schedule_switch.h"
 
 namespace stipple {
 namespace {
@@ -60,7 +61,9 @@ bool matches_counts(const DueCounts& counts, std::int64_t slot, RowBand band, st
 
 bool matches_schedule(const StreamHeader& stream, std::int64_t slot, RowBand band,
                       std::size_t samples) {
-    const ExposureSchedule& schedule = stream.schedule;
+    const SchedulePart part = schedule_at(stream, slot);
+    const ExposureSchedule& schedule = *part.schedule;
+    slot = readout_slot(part, slot);
     const auto phase = static_cast<int>(slot % schedule.period_slots());
     const auto planes = static_cast<std::size_t>(stream.shape.planes);
     const auto whole_tiles = static_cast<std::size_t>(stream.shape.cols / schedule.tile_cols());

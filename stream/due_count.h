@@ -31,8 +31,8 @@ class DueCounts {
     std::vector<std::uint16_t> absent_;  ///< by slot and row: due, but begun before slot 0
 };
 
-/// True if `samples` equals planes x `count_due` of these rows of `slot`. Counts by tiles and stops
-/// above `samples`, so a false number costs no more time than a true one.
+/// True if `samples` equals the due pixels of these rows of `slot` x planes. Counts by tiles and
+/// stops above `samples`, so a false number costs no more time than a true one.
 [[nodiscard]] bool matches_schedule(const StreamHeader& stream, std::int64_t slot, RowBand band,
                                     std::size_t samples);
 

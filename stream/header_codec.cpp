@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 #include <string>
+#include <utility>
 
 #include "core/error.h"
 #include "core/geometry.h"
@@ -21,6 +22,7 @@ constexpr std::array<std::uint8_t, 8> kMagic{0x89, 'S', 'T', 'P', 'L', '\r', '\n
 constexpr std::array<std::uint8_t, 4> kRecording{0x89, 'S', 'T', 'R'};  // recording_format.md
 constexpr std::uint16_t kVersion = 2;        ///< that is written; 1 is read, too
 constexpr std::uint16_t kWeightVersion = 3;  ///< the same, if bytes 86 and 87 are not both 0
+constexpr std::uint16_t kSwitchVersion = 4;  ///< the same, if the schedule may change
 constexpr std::size_t kVersionAt = 8;
 constexpr std::size_t kFixedBytes = 92;
 constexpr std::size_t kCrcBytes = 4;
@@ -68,11 +70,14 @@ constexpr Field kNoiseFree{87, "absence of noise", 0, 1};
 constexpr std::size_t kScheduleCrc = 88;
 constexpr std::size_t kReserved = 10;  ///< two bytes
 
+std::optional<std::string> fault_of(const Field& field, double value) {
+    if (value >= field.min && value <= field.max) return std::nullopt;  // false for NaN
+    return fmt::format("{} {:.12g} is outside {:.12g}..{:.12g}", field.name, value, field.min,
+                       field.max);
+}
+
 void check(const Field& field, double value, std::string_view where) {
-    if (value >= field.min && value <= field.max) return;  // false for NaN
-    fail_at(where, field.offset,
-            fmt::format("{} {:.12g} is outside {:.12g}..{:.12g}", field.name, value, field.min,
-                        field.max));
+    if (const auto fault = fault_of(field, value)) fail_at(where, field.offset, *fault);
 }
 
 /// The part of a header that is numbers.
@@ -159,7 +164,7 @@ void check_reserved(Bytes header, std::string_view where) {
         for (const Field& field : {kWeightSection, kNoiseFree}) require_zero(field.offset);
 }
 
-/// Of version 3: bytes 86 and 87.
+/// Of versions 3 and 4: bytes 86 and 87.
 struct Additions {
     bool weights = false;
     bool noise_free = false;
@@ -169,9 +174,11 @@ Additions load_additions(Bytes header, std::string_view where) {
     for (const Field& field : {kWeightSection, kNoiseFree})
         check(field, load_at<std::uint8_t>(header, field), where);
     const Additions additions{header[kWeightSection.offset] != 0, header[kNoiseFree.offset] != 0};
-    if (load<std::uint16_t>(&header[kVersionAt]) == kWeightVersion && !additions.weights &&
-        !additions.noise_free)
+    const auto version = load<std::uint16_t>(&header[kVersionAt]);
+    if (version == kWeightVersion && !additions.weights && !additions.noise_free)
         fail_at(where, kVersionAt, "version 3 has weights or says that there is no noise");
+    if (version == kSwitchVersion && additions.weights)
+        fail_at(where, kWeightSection.offset, "version 4 has no weights");
     if (additions.weights && load_at<std::uint8_t>(header, kScheduleKind) != 0)
         fail_at(where, kWeightSection.offset, "a random schedule has no weights");
     return additions;
@@ -214,7 +221,30 @@ std::size_t calibration_bytes(Bytes header, std::size_t sections, std::size_t we
     return sections - weights;
 }
 
+void refuse_interleaved(const ExposureSchedule& schedule, std::string_view where) {
+    if (schedule.interleaved())
+        fail_at(where, kVersionAt, "version 4 has no interleaved exposures");
+}
+
 }  // namespace
+
+std::optional<std::string> readout_fault(const ReadoutValues& values) {
+    const std::pair<Field, double> fields[] = {{kRounding, static_cast<int>(values.rounding)},
+                                               {kBlackLevel, values.black_level_dn},
+                                               {kGain, values.gain_e_per_dn},
+                                               {kReadNoise, values.read_noise_e},
+                                               {kFullWell, values.full_well_e},
+                                               {kElectronsPerUnit, values.electrons_per_unit}};
+    for (const auto& [field, value] : fields)
+        if (auto fault = fault_of(field, value)) return fault;
+    return std::nullopt;
+}
+
+std::optional<std::string> name_fault(std::string_view name) {
+    if (auto fault = fault_of(kNameBytes, static_cast<double>(name.size()))) return fault;
+    if (is_plain_text(name, false)) return std::nullopt;
+    return "schedule name is not UTF-8 without control characters";
+}
 
 std::vector<std::uint8_t> encode_header(const StreamHeader& header, std::string_view where) {
     const Numbers numbers{header.shape, header.slot_us, header.calibration, header.cfa};
@@ -233,7 +263,12 @@ std::vector<std::uint8_t> encode_header(const StreamHeader& header, std::string_
     const bool noise_free = header.calibration.noise_free;
 
     std::vector<std::uint8_t> bytes(kMagic.begin(), kMagic.end());
-    append(bytes, weighted || noise_free ? kWeightVersion : kVersion);
+    if (header.may_switch) refuse_interleaved(header.schedule, where);
+    if (header.may_switch && weighted)
+        fail_at(where, kWeightSection.offset, "version 4 has no weights");
+    append(bytes, header.may_switch        ? kSwitchVersion
+                  : weighted || noise_free ? kWeightVersion
+                                           : kVersion);
     append(bytes, std::uint16_t{0});
     append(bytes, static_cast<std::uint32_t>(kFixedBytes + header.schedule_name.size() +
                                              header.provenance.size() + schedule.size() +
@@ -276,10 +311,10 @@ std::size_t header_bytes(Bytes start, std::string_view where) {
     if (start.size() < kHeaderStartBytes)
         fail_at(where, start.size(), "the file ends within its header");
     const auto version = load<std::uint16_t>(&start[kVersionAt]);
-    if (version < 1 || version > kWeightVersion)
+    if (version < 1 || version > kSwitchVersion)
         fail_at(where, kVersionAt,
                 fmt::format("version {} of the sample stream; this program reads versions 1 to {}",
-                            version, kWeightVersion));
+                            version, kSwitchVersion));
     const auto bytes = load_at<std::uint32_t>(start, kHeaderLength);
     check(kHeaderLength, bytes, where);
     return bytes;
@@ -312,6 +347,8 @@ StreamHeader decode_header(Bytes header, std::string_view where, const ScheduleU
                                   numbers.shape, where, use);
     if (stored.crc != load<std::uint32_t>(&header[kScheduleCrc]))
         fail_at(where, kScheduleCrc, "the schedule is not the one that was recorded");
+    const bool may_switch = load<std::uint16_t>(&header[kVersionAt]) == kSwitchVersion;
+    if (may_switch) refuse_interleaved(stored.schedule, where);
     const std::size_t calibration =
         calibration_bytes(header, parts.sections.size(),
                           additions.weights ? weight_bytes(stored.schedule) : 0, where);
@@ -329,7 +366,10 @@ StreamHeader decode_header(Bytes header, std::string_view where, const ScheduleU
             std::move(stored.source),
             std::string(parts.name),
             std::string(parts.provenance),
-            numbers.cfa};
+            numbers.cfa,
+            {},
+            {},
+            may_switch};
 }
 
 }  // namespace stipple

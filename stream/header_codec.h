@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <optional>
 #include <span>
+#include <string>
 #include <string_view>
 #include <vector>
 
@@ -73,8 +74,13 @@ struct ScheduleUse {
 
 /// The schedule section of a header. \throws InputError at `where` if the schedule exceeds the
 /// limits of the format, or differs from the output of its generator.
-[[nodiscard]] std::vector<std::uint8_t> encode_schedule(const StreamHeader& header,
-                                                        std::string_view where);
+[[nodiscard]] std::vector<std::uint8_t> encode_schedule(const ExposureSchedule& schedule,
+                                                        const ScheduleSource& source,
+                                                        FrameShape shape, std::string_view where);
+[[nodiscard]] inline std::vector<std::uint8_t> encode_schedule(const StreamHeader& header,
+                                                               std::string_view where) {
+    return encode_schedule(header.schedule, header.schedule_source, header.shape, where);
+}
 
 /// The inverse. Messages call the file `where`. \throws InputError naming file and offset, or as
 /// check_memory.
@@ -83,6 +89,12 @@ struct ScheduleUse {
 
 /// CRC-32C of the schedule in explicit form, whatever its source.
 [[nodiscard]] std::uint32_t schedule_crc(const ExposureSchedule& schedule);
+
+/// What is wrong with values of a readout, by the limits of a header; nothing if they are good.
+[[nodiscard]] std::optional<std::string> readout_fault(const ReadoutValues& values);
+
+/// The same of the name of a schedule.
+[[nodiscard]] std::optional<std::string> name_fault(std::string_view name);
 
 /// First bytes of a file, which hold the length of its header.
 inline constexpr std::size_t kHeaderStartBytes = 16;

@@ -34,7 +34,7 @@ void frame_packet(PacketHeader header, std::span<std::uint8_t> packet, std::uint
     std::copy(kPacketSync.begin(), kPacketSync.end(), packet.begin());
     packet[4] = static_cast<std::uint8_t>(header.kind);
     packet[5] = header.flags;
-    store(&packet[6], header.reserved);
+    store(&packet[6], header.switches);
     store(&packet[8], header.slot);
     store(&packet[16], header.first_row);
     store(&packet[18], header.rows);
@@ -48,7 +48,7 @@ PacketHeader decode_packet_header(Bytes bytes) {
     PacketHeader header;
     header.kind = PacketKind{bytes[4]};
     header.flags = bytes[5];
-    header.reserved = load<std::uint16_t>(&bytes[6]);
+    header.switches = load<std::uint16_t>(&bytes[6]);
     header.slot = load<std::uint64_t>(&bytes[8]);
     header.first_row = load<std::uint16_t>(&bytes[16]);
     header.rows = load<std::uint16_t>(&bytes[18]);

@@ -23,13 +23,13 @@ inline constexpr std::size_t kEndMarkerBytes = 20;
 inline constexpr std::uint32_t kMaxPayloadBytes = 1U << 29U;
 inline constexpr std::uint64_t kMaxSlot = (std::uint64_t{1} << 53U) - 1;
 
-enum class PacketKind : std::uint8_t { kSamples = 1, kAddressed = 2, kIndex = 3 };
+enum class PacketKind : std::uint8_t { kSamples = 1, kAddressed = 2, kIndex = 3, kSwitch = 4 };
 
 /// The numbers of a packet header, unchecked.
 struct PacketHeader {
     PacketKind kind = PacketKind::kSamples;
     std::uint8_t flags = 0;
-    std::uint16_t reserved = 0;
+    std::uint16_t switches = 0;  ///< of the stream up to this packet; 0 before version 4
     std::uint64_t slot = 0;
     std::uint16_t first_row = 0;
     std::uint16_t rows = 0;

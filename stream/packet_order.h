@@ -70,9 +70,19 @@ struct PacketFault {
                                                       StreamPosition expected,
                                                       const DueRule& rule = {});
 
-/// The same for an index packet. The offsets of its entries must be less than `offset`.
+/// The same for a switch packet that is no copy of the last one, before its payload is decoded.
+[[nodiscard]] std::optional<std::string> switch_fault(const StreamHeader& stream,
+                                                      const PacketHeader& packet,
+                                                      StreamPosition expected);
+
+/// Of a stream of an earlier version than 4.
+inline constexpr int kNoSwitches = -1;
+
+/// The same for an index packet. The offsets of its entries must be less than `offset`; `switches`:
+/// number of the last one that came, or kNoSwitches.
 [[nodiscard]] std::optional<std::string> index_fault(const PacketHeader& packet,
                                                      std::span<const std::uint8_t> payload,
-                                                     std::uint64_t offset, StreamPosition expected);
+                                                     std::uint64_t offset, StreamPosition expected,
+                                                     int switches);
 
 }  // namespace stipple

@@ -8,8 +8,9 @@
 namespace stipple {
 
 std::vector<std::uint8_t> encode_samples(const SamplePacket& packet, int bit_depth,
-                                         std::uint32_t seed) {
+                                         std::uint32_t seed, std::uint16_t switches) {
     PacketHeader header;
+    header.switches = switches;
     header.flags = packet.flags;
     header.slot = static_cast<std::uint64_t>(packet.slot);
     header.first_row = static_cast<std::uint16_t>(packet.first_row);

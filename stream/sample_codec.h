@@ -13,10 +13,11 @@
 
 namespace stipple {
 
-/// The bytes of a packet of samples, as StreamWriter writes them; `seed`: of the Framing.
-/// Precondition: each DN is below 2^bit_depth.
+/// The bytes of a packet of samples, as StreamWriter writes them; `seed`: of the Framing;
+/// `switches`: of the stream so far. Precondition: each DN is below 2^bit_depth.
 [[nodiscard]] std::vector<std::uint8_t> encode_samples(const SamplePacket& packet, int bit_depth,
-                                                       std::uint32_t seed);
+                                                       std::uint32_t seed,
+                                                       std::uint16_t switches = 0);
 
 /// A packet decoded from bytes, or the fault.
 struct DecodedSamples {

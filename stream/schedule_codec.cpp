@@ -169,14 +169,13 @@ StoredSchedule make_random(const ScheduleSource& source, FrameShape shape, std::
 
 }  // namespace
 
-std::vector<std::uint8_t> encode_schedule(const StreamHeader& header, std::string_view where) {
+std::vector<std::uint8_t> encode_schedule(const ExposureSchedule& schedule,
+                                          const ScheduleSource& source, FrameShape shape,
+                                          std::string_view where) {
     const auto fail = [&](std::string_view problem) {
         throw InputError(std::string(where).append(": schedule"), problem);
     };
-    const ExposureSchedule& schedule = header.schedule;
-    const ScheduleSource& source = header.schedule_source;
     if (source.kind == ScheduleSource::Kind::kRandom) {
-        const FrameShape shape = header.shape;
         if (const auto fault = generator_fault(source.exposure_slots, shape)) fail(*fault);
         // Found out now rather than when the recording is read.
         std::optional<DueCounts> counts;

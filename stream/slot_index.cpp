@@ -31,12 +31,14 @@ void store_index(std::span<const IndexEntry> entries, std::span<std::uint8_t> pa
     }
 }
 
-std::vector<IndexEntry> load_index(std::span<const std::uint8_t> payload) {
-    std::vector<IndexEntry> entries(payload.size() / kIndexEntryBytes);
-    for (std::size_t i = 0; i < entries.size(); ++i)
-        entries[i] = {load<std::uint64_t>(&payload[i * kIndexEntryBytes]),
-                      load<std::uint64_t>(&payload[i * kIndexEntryBytes + 8])};
-    return entries;
+IndexEntries load_index(std::span<const std::uint8_t> payload, std::size_t switches) {
+    const std::size_t slots = payload.size() / kIndexEntryBytes - switches;
+    IndexEntries index;
+    for (std::size_t i = 0; i < slots + switches; ++i)
+        (i < slots ? index.slots : index.switches)
+            .push_back({load<std::uint64_t>(&payload[i * kIndexEntryBytes]),
+                        load<std::uint64_t>(&payload[i * kIndexEntryBytes + 8])});
+    return index;
 }
 
 }  // namespace stipple

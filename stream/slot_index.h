@@ -42,14 +42,21 @@ class SlotIndex {
 };
 
 void store_index(std::span<const IndexEntry> entries, std::span<std::uint8_t> payload);
-/// Precondition: a multiple of kIndexEntryBytes.
-[[nodiscard]] std::vector<IndexEntry> load_index(std::span<const std::uint8_t> payload);
+
+/// The content of an index: where slots, and where switches of the schedule begin.
+struct IndexEntries {
+    std::vector<IndexEntry> slots;
+    std::vector<IndexEntry> switches;
+};
+
+/// Precondition: a multiple of kIndexEntryBytes, of which there are `switches` or more.
+[[nodiscard]] IndexEntries load_index(std::span<const std::uint8_t> payload, std::size_t switches);
 
 /// What the end of a whole stream tells.
 struct TrailingIndex {
     std::int64_t slots = 0;                 ///< in the stream
     std::optional<std::uint32_t> checksum;  ///< of all packets; none in version 1
-    std::vector<IndexEntry> entries;
+    IndexEntries entries;
 };
 
 /// The index that the end marker of a file points to. Nothing if there is no index, if it is
@@ -62,13 +69,19 @@ struct TrailingIndex {
 [[nodiscard]] std::optional<std::int64_t> slots_by_index(const BufferedReader& file,
                                                          const Framing& framing);
 
+/// A place to begin at, and where the switches of the schedule are.
+struct IndexPlace {
+    IndexEntry begin;
+    std::vector<IndexEntry> switches;
+};
+
 /// Its last entry that is not after `slot`, if the first packet of that slot begins there.
-[[nodiscard]] std::optional<IndexEntry> entry_before(const BufferedReader& file,
+[[nodiscard]] std::optional<IndexPlace> entry_before(const BufferedReader& file,
                                                      const Framing& framing, std::int64_t slot);
 
-/// Message on the first entry of an index that does not point to the first packet of its slot.
-/// Nothing if all do, or if `file` is a pipe.
-[[nodiscard]] std::optional<std::string> wrong_entry(const std::vector<IndexEntry>& entries,
+/// Message on the first entry of an index that does not point to the first packet of its slot, or
+/// to its switch. Nothing if all do, or if `file` is a pipe.
+[[nodiscard]] std::optional<std::string> wrong_entry(const IndexEntries& entries,
                                                      const BufferedReader& file,
                                                      const Framing& framing);
 

@@ -89,6 +89,22 @@ void visit_schedule_figures(const StreamHeader& header, const Add& add) {
     }
 }
 
+/// An entry of the list `switches`.
+template <typename Add>
+void visit_switch_figures(const ScheduleSwitch& part, const Add& add) {
+    add("number", part.number);
+    add("slot", part.slot);
+    add("schedule", part.name);
+    add("period_slots", part.schedule.period_slots());
+    add("samples_per_pixel_slot", part.schedule.samples_per_pixel_slot());
+    add("rounding", name_of(part.values.rounding));
+    add("black_level_dn", part.values.black_level_dn);
+    add("gain_e_per_dn", part.values.gain_e_per_dn);
+    add("read_noise_e", part.values.read_noise_e);
+    add("full_well_e", part.values.full_well_e);
+    add("electrons_per_unit", part.values.electrons_per_unit);
+}
+
 /// Counts of the slots and packets that were read.
 template <typename Add>
 void visit_report_figures(const StreamReport& report, const Add& add) {

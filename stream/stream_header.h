@@ -88,6 +88,33 @@ struct ScheduleSource {
     bool operator==(const ScheduleSource&) const = default;
 };
 
+/// The values of a calibration that a switch changes.
+struct ReadoutValues {
+    Rounding rounding = Rounding::kNearest;
+    double black_level_dn = 0;
+    double gain_e_per_dn = 1;
+    double read_noise_e = 0;
+    double full_well_e = 1;
+    double electrons_per_unit = 1;
+
+    bool operator==(const ReadoutValues&) const = default;
+};
+
+/// From a slot on a stream has another schedule and other values of its readouts (core/
+/// schedule_parts.h). The first slot may be in an exposure that began before it.
+struct ScheduleSwitch {
+    std::int64_t slot = 1;
+    ExposureSchedule schedule;
+    ScheduleSource source;
+    std::string name;  ///< of the schedule
+    ReadoutValues values;
+    std::uint16_t number = 1;  ///< of this switch, from 1 on; one that is missing was damaged
+    /// Max span of the exposures under way at the switch and those of its schedule; 0 if unknown.
+    int longest_span_slots = 0;
+
+    bool operator==(const ScheduleSwitch&) const = default;
+};
+
 /// Header of a sample stream (docs/stream_format.md): everything that its decoder knows of the
 /// sensor.
 struct StreamHeader {
@@ -104,6 +131,10 @@ struct StreamHeader {
     std::vector<SiteCalibration> sites = {};
     /// Likewise; offset, dark current and noise of `sites` are in linear DN. Empty without `sites`.
     ResponseTable response = {};
+    bool may_switch = false;  ///< version 4: the schedule may change
+    /// By slot: those that a reader has met before the packet that it read last. Not part of a
+    /// header.
+    std::vector<ScheduleSwitch> switches = {};
 
     bool operator==(const StreamHeader&) const = default;
 };

@@ -37,7 +37,8 @@ StreamOpening open_stream_header(BufferedReader& window, const std::string& wher
     const ScheduleUse use{policy == ReadPolicy::kCounts ? &counts : nullptr,
                           bytes_of(window, wait)};
     StreamHeader decoded = decode_header(header, where, use);
-    StreamOpening result{std::move(decoded), framing_of(header), std::move(counts)};
+    StreamOpening result{std::move(decoded), framing_of(header), std::move(counts),
+                         policy == ReadPolicy::kCounts};
     window.skip(bytes);
     return result;
 }

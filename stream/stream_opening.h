@@ -17,6 +17,7 @@ struct StreamOpening {
     StreamHeader header;
     Framing framing;
     std::optional<DueCounts> counts;  ///< kCounts, of a random schedule
+    bool counting = false;            ///< kCounts
 };
 
 /// Size of a file that is not followed; else kEndlessInput.

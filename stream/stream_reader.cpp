@@ -13,8 +13,10 @@
 #include "stream/crc32c.h"
 #include "stream/packet_codec.h"
 #include "stream/packet_order.h"
+#include "stream/schedule_switch.h"
 #include "stream/slot_index.h"
 #include "stream/stream_opening.h"
+#include "stream/switch_track.h"
 
 namespace stipple {
 namespace {
@@ -38,6 +40,7 @@ struct StreamReader::Impl {
                  wait ? BufferedReader::EmptyPipe::kReturn : BufferedReader::EmptyPipe::kWait),
           input_bytes(bytes_of(window, wait)),
           stream(open_stream_header(window, where, read_policy, wait)),
+          switches(stream, where, input_bytes),
           slots(slots_by_index(window, stream.framing)),
           first_packet(window.offset()),
           order(stream.header.shape.rows),
@@ -60,8 +63,10 @@ struct StreamReader::Impl {
     /// At the end of what there is of the file: true if it is to be looked at again.
     bool more_comes();
     void count_bytes_after_end();
-    [[nodiscard]] std::optional<PacketFault> fault_of(const PacketHeader& found,
-                                                      Bytes payload) const;
+    /// Nothing for a good packet; one of a switch is taken.
+    [[nodiscard]] std::optional<PacketFault> fault_of(const PacketHeader& found, Bytes payload);
+    [[nodiscard]] std::optional<PacketFault> index_fault_of(const PacketHeader& found,
+                                                            Bytes payload) const;
 
     /// Strict: throws. Tolerant: reports it.
     void note(std::uint64_t bytes, std::string_view cause);
@@ -79,6 +84,7 @@ struct StreamReader::Impl {
     BufferedReader window;
     std::uint64_t input_bytes;
     StreamOpening stream;
+    SwitchTrack switches;
     std::optional<std::int64_t> slots;
     std::uint64_t first_packet;  ///< its offset
     SlotIndex seen;              ///< the slots that were read, up to the last one so far
@@ -198,33 +204,43 @@ StreamReader::Impl::Step StreamReader::Impl::take_packet(const PacketHeader& fou
         if (fault->is_unexpected) ++report.unexpected_packets;
     } else if (found.kind == PacketKind::kIndex) {
         take_index(found);
-    } else {
+    } else if (found.kind == PacketKind::kSamples) {
         deliver(found, payload, packet);
     }
     window.skip(size);
-    return fault || found.kind == PacketKind::kIndex ? Step::kGoOn : Step::kDelivered;
+    return fault || found.kind != PacketKind::kSamples ? Step::kGoOn : Step::kDelivered;
 }
 
-std::optional<PacketFault> StreamReader::Impl::fault_of(const PacketHeader& found,
-                                                        Bytes payload) const {
+std::optional<PacketFault> StreamReader::Impl::fault_of(const PacketHeader& found, Bytes payload) {
     if (index_offset) return PacketFault{"a packet after the index"};
     if (found.kind == PacketKind::kSamples) {
         auto fault = sample_fault(stream.header, found, payload, order.expected(),
-                                  {any_schedule, stream.counts ? &*stream.counts : nullptr});
+                                  {any_schedule, switches.counts()});
         if (!fault && slots && found.slot >= static_cast<std::uint64_t>(*slots))
             fault = PacketFault{
                 fmt::format("slot {} is not one of the {} in the index", found.slot, *slots)};
         return fault;
     }
-    if (found.kind != PacketKind::kIndex)
-        return PacketFault{
-            fmt::format("packets of kind {} are not supported", static_cast<int>(found.kind))};
+    if (found.kind == PacketKind::kIndex) return index_fault_of(found, payload);
+    auto fault = fmt::format("packets of kind {} are not supported", static_cast<int>(found.kind));
+    if (found.kind != PacketKind::kSwitch || !stream.header.may_switch)
+        return PacketFault{std::move(fault)};
+    auto wrong = switches.take(found, payload, order.expected());
+    return wrong ? std::optional(PacketFault{std::move(*wrong)}) : std::nullopt;
+}
+
+std::optional<PacketFault> StreamReader::Impl::index_fault_of(const PacketHeader& found,
+                                                              Bytes payload) const {
     // After damage and gaps no offset is right, but the number of slots is.
     const StreamPosition end{static_cast<std::int64_t>(found.slot), 0};
     const bool intact = report.damage.empty() && end == order.expected();
     const auto before = intact ? window.offset() : std::numeric_limits<std::uint64_t>::max();
-    auto fault = index_fault(found, payload, before, order.expected());
-    if (!fault && intact) fault = wrong_entry(load_index(payload), window, stream.framing);
+    const int known = stream.header.may_switch ? last_switch(stream.header) : kNoSwitches;
+    auto fault = index_fault(found, payload, before, order.expected(), known);
+    if (!fault && intact && found.switches > std::max(known, 0))
+        fault = fmt::format("the index counts {} switches of the schedule", found.switches);
+    if (!fault && intact)
+        fault = wrong_entry(load_index(payload, found.switches), window, stream.framing);
     return fault ? std::optional(PacketFault{*fault}) : std::nullopt;
 }
 
@@ -340,6 +356,10 @@ void StreamReader::use_sites(std::vector<SiteCalibration> sites, ResponseTable r
     impl_->stream.header.response = std::move(response);
 }
 
+void StreamReader::follow_switches() {
+    impl_->switches.follow();
+}
+
 std::optional<std::int64_t> StreamReader::slots() const {
     return impl_->slots;
 }
@@ -347,9 +367,12 @@ std::optional<std::int64_t> StreamReader::slots() const {
 std::int64_t StreamReader::seek(std::int64_t slot) {
     if (impl_->wait || !impl_->window.file_bytes()) return 0;
     auto place = entry_before(impl_->window, impl_->stream.framing, slot);
+    if (place && !impl_->switches.reach(*place, impl_->window)) place.reset();
     const auto seen = last_before(impl_->seen.entries(), slot);
-    if (seen && (!place || seen->slot > place->slot)) place = seen;
-    impl_->begin_at(place.value_or(IndexEntry{0, impl_->first_packet}));
+    if (seen && (!place || seen->slot > place->begin.slot)) place = IndexPlace{*seen, {}};
+    const IndexEntry begin = place ? place->begin : IndexEntry{0, impl_->first_packet};
+    impl_->switches.forget_after(static_cast<std::int64_t>(begin.slot));
+    impl_->begin_at(begin);
     return impl_->order.expected().slot;
 }
 

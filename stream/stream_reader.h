@@ -75,6 +75,7 @@ class StreamReader {
     StreamReader(StreamReader&&) noexcept;
     StreamReader& operator=(StreamReader&&) noexcept;
 
+    /// With the switches that `next` has met, or `seek` has passed.
     [[nodiscard]] const StreamHeader& header() const;
     /// Name of the stream in messages: the path of its file, or that of `use_name`.
     [[nodiscard]] const std::string& name() const;
@@ -88,6 +89,9 @@ class StreamReader {
     /// Sets `header().sites` and `header().response`. Precondition: no packet has been read; no
     /// site, or one calibration for each; an empty table, or a number for each DN of the bit depth.
     void use_sites(std::vector<SiteCalibration> sites, ResponseTable response = {});
+    /// For callers that take the schedule and the values of each slot from `header().switches`
+    /// (schedule_switch.h). Without this `next` and `seek` refuse a stream whose schedule changes.
+    void follow_switches();
     /// Number of slots in the stream. Known at once if the file ends with a good index (then less
     /// than the bytes of the file / 36, since each slot has a packet), else once the end marker has
     /// been read. Nothing if the stream was interrupted, is still growing, or comes through a pipe.
@@ -102,7 +106,7 @@ class StreamReader {
 
     /// Reads the next good packet in file order. Returns false at the last whole packet; if the
     /// file is still being written, a later call may succeed. \throws InputError (kStrict only;
-    /// and if the file cannot be read).
+    /// if the file cannot be read; at a switch of the schedule, see follow_switches).
     bool next(SamplePacket& packet);
 
     /// Report on the bytes read so far.

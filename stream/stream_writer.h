@@ -28,6 +28,13 @@ class StreamWriter {
     /// `dn` has one DN for each due pixel and plane of its slot and rows (none if dropped), each
     /// below 2^bit_depth. \throws DeviceError (full disk).
     void write(const SamplePacket& packet);
+    /// From the next slot on the schedule and the readout values are those of `next`, whose slot
+    /// and number this sets. The switch is written twice, before and after the samples of that
+    /// slot. Precondition: header.may_switch; the last slot has all its rows and is not the first
+    /// one. \throws InputError if the values are outside their limits, if the schedule has weights
+    /// or interleaved exposures, or if an exposure under way would have more than 64 slots: then
+    /// the stream goes on as before. DeviceError.
+    void switch_schedule(ScheduleSwitch next);
     /// Marks the missing rows of the last slot as dropped, writes the index and closes the file. No
     /// call of `write` may follow. \throws DeviceError.
     void finish();

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <utility>
 
 #include "stream/crc32c.h"
 #include "stream/packet_codec.h"
@@ -12,12 +13,12 @@ namespace stipple {
 
 namespace {
 
-bool leads_to_slot(const IndexEntry& entry, const BufferedReader& file, const Framing& framing) {
+bool leads_to(PacketKind kind, const IndexEntry& entry, const BufferedReader& file,
+              const Framing& framing) {
     const auto start = file.read_at(entry.offset, kPacketHeaderBytes);
     if (!start || start_of(*start, framing) != Start::kPacket) return false;
     const PacketHeader header = decode_packet_header(*start);
-    return header.kind == PacketKind::kSamples && header.slot == entry.slot &&
-           header.first_row == 0;
+    return header.kind == kind && header.slot == entry.slot && header.first_row == 0;
 }
 
 }  // namespace
@@ -39,8 +40,10 @@ std::optional<TrailingIndex> read_trailing_index(const BufferedReader& file,
     if (!payload || crc32c(*payload) != packet.payload_crc) return std::nullopt;
     // Each slot takes a packet or more, so the length of the file bounds their number.
     if (packet.slot > offset / kPacketHeaderBytes) return std::nullopt;
-    if (index_fault(packet, *payload, offset, {})) return std::nullopt;
-    return TrailingIndex{static_cast<std::int64_t>(packet.slot), checksum, load_index(*payload)};
+    const int switches = framing.version < 4 ? kNoSwitches : 0;
+    if (index_fault(packet, *payload, offset, {}, switches)) return std::nullopt;
+    return TrailingIndex{static_cast<std::int64_t>(packet.slot), checksum,
+                         load_index(*payload, packet.switches)};
 }
 
 std::optional<std::int64_t> slots_by_index(const BufferedReader& file, const Framing& framing) {
@@ -48,22 +51,27 @@ std::optional<std::int64_t> slots_by_index(const BufferedReader& file, const Fra
     return index ? std::optional(index->slots) : std::nullopt;
 }
 
-std::optional<IndexEntry> entry_before(const BufferedReader& file, const Framing& framing,
+std::optional<IndexPlace> entry_before(const BufferedReader& file, const Framing& framing,
                                        std::int64_t slot) {
-    const auto index = read_trailing_index(file, framing);
+    auto index = read_trailing_index(file, framing);
     if (!index) return std::nullopt;
-    auto entry = last_before(index->entries, slot);
-    if (entry && !leads_to_slot(*entry, file, framing)) entry.reset();
-    return entry;
+    const auto entry = last_before(index->entries.slots, slot);
+    if (!entry || !leads_to(PacketKind::kSamples, *entry, file, framing)) return std::nullopt;
+    return IndexPlace{*entry, std::move(index->entries.switches)};
 }
 
-std::optional<std::string> wrong_entry(const std::vector<IndexEntry>& entries,
-                                       const BufferedReader& file, const Framing& framing) {
+std::optional<std::string> wrong_entry(const IndexEntries& entries, const BufferedReader& file,
+                                       const Framing& framing) {
     if (!file.file_bytes()) return std::nullopt;
-    for (const IndexEntry& entry : entries)
-        if (!leads_to_slot(entry, file, framing))
+    for (const IndexEntry& entry : entries.slots)
+        if (!leads_to(PacketKind::kSamples, entry, file, framing))
             return fmt::format("the index says that slot {} begins at byte {}, but it does not",
                                entry.slot, entry.offset);
+    for (const IndexEntry& entry : entries.switches)
+        if (!leads_to(PacketKind::kSwitch, entry, file, framing))
+            return fmt::format(
+                "the index says that slot {} has a switch at byte {}, but it has not", entry.slot,
+                entry.offset);
     return std::nullopt;
 }
 

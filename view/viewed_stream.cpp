@@ -37,6 +37,10 @@ ViewedStream::ViewedStream(std::unique_ptr<PacketSource> source, std::string nam
       samples_(source_->header(), whole(source_->header().shape)) {
     if (header().schedule.weighted())
         throw InputError(name_, "a page shows no grey masks; \"stipple decode\" takes this stream");
+    if (header().may_switch)
+        throw InputError(name_,
+                         "may change its schedule, of which a page shows one; \"stipple decode\" "
+                         "takes this stream");
     samples_.add_kinds();
 }
 

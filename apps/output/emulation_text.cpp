@@ -31,14 +31,17 @@ std::string emulation_text(const StreamRecorder& recorder, std::optional<double>
         fmt::format(", {:.2f} % of the samples saturated, {:.2f} % at DN 0",
                     100 * recorder.saturated_fraction(), 100 * recorder.zero_fraction());
     const bool any = stats.samples > 0;
+    const std::string light =
+        recorder.emulator().switched()
+            ? "the schedule has changed"
+            : fmt::format("light throughput {:.1f} %, {:.1f} % read within the clip",
+                          100 * recorder.emulator().light_throughput(),
+                          100 * recorder.emulator().light_read());
     std::string text = fmt::format(
-        "{} of {} x {} x {}, {} of {} bits{}\n"
-        "light throughput {:.1f} %, {:.1f} % read within the clip{}{}",
-        counted(stats.slots, "slot"), setup.shape.cols, setup.shape.rows, setup.shape.planes,
+        "{} of {} x {} x {}, {} of {} bits{}\n{}{}{}", counted(stats.slots, "slot"),
+        setup.shape.cols, setup.shape.rows, setup.shape.planes,
         counted(recorder.samples(), "sample"), setup.params.bit_depth,
-        any ? per_sample : ": no exposure ended within the footage",
-        100 * recorder.emulator().light_throughput(), 100 * recorder.emulator().light_read(),
-        any ? clipped : "",
+        any ? per_sample : ": no exposure ended within the footage", light, any ? clipped : "",
         slots_per_second ? fmt::format(", {} slots/s", rounded(*slots_per_second)) : "");
     if (const ReadoutCost* cost = recorder.emulator().readout_cost())
         text.append(1, '\n').append(readout_text(*cost));

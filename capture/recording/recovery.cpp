@@ -17,6 +17,7 @@ namespace {
 /// How much of a stream is whole.
 Recovered whole_of_stream(const fs::path& file, const std::function<void()>& check) {
     StreamReader reader(file, ReadPolicy::kCounts);
+    reader.follow_switches();
     SamplePacket packet;
     while (reader.next(packet)) check();
     const StreamReport& report = reader.report();

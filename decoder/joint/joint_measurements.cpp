@@ -10,6 +10,7 @@
 #include "core/parallel.h"
 #include "decoder/measurements.h"
 #include "decoder/pixel_response.h"
+#include "stream/schedule_switch.h"
 
 namespace stipple {
 namespace {
@@ -126,8 +127,8 @@ Measurements collect_joint(std::span<const SensorSamples> sensors, const VideoWi
     return first;
 }
 
-Calibration joint_calibration(std::span<const SensorSamples> sensors) {
-    Calibration joint = sensors.front().header.calibration;
+Calibration joint_calibration(std::span<const SensorSamples> sensors, std::int64_t slot) {
+    Calibration joint = calibration_at(sensors.front().header, slot);
     if (sensors.size() == 1) return joint;
     joint.electrons_per_unit = 0;
     double inverse_variance = 0;

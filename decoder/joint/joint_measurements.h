@@ -34,8 +34,9 @@ struct SensorSamples {
                                          const VideoWindow& window);
 
 /// The calibration of one sensor with the photons of all, and the noise of their weighted mean; for
-/// one sensor its own.
-[[nodiscard]] Calibration joint_calibration(std::span<const SensorSamples> sensors);
+/// one sensor its own in `slot`.
+[[nodiscard]] Calibration joint_calibration(std::span<const SensorSamples> sensors,
+                                            std::int64_t slot);
 
 /// Merges exposures of the same slots of a site, which several sensors have: the mean of their
 /// samples, weighted by their inverse variances, becomes a sample of the sensor that comes first,

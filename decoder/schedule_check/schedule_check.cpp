@@ -162,6 +162,9 @@ ScheduleCheck check_schedule(StreamReader& reader) {
     if (header.schedule.weighted())
         throw InputError("exposure schedule",
                          "its exposures are weighted; shifts of weights are not searched");
+    if (header.may_switch)
+        throw InputError(reader.name(),
+                         "may change its schedule between slots; shifts of it are not searched");
     ScheduleCheck check;
     const std::vector<SamplePacket> packets = read_window(reader);
     if (packets.size() < kMinPackets || header.schedule.longest_span_slots() == 0) return check;

@@ -142,7 +142,8 @@ struct ScheduleCheck {
 /// Shifts that contradict the numbers of samples are excluded. The best of the others is taken if
 /// its residual is at most 0.9 of the median and five standard errors below all shifts that do not
 /// look the same. The reader stands at its beginning, with ReadPolicy::kAnySchedule. The same
-/// result for any number of threads. \throws InputError if exposures are weighted.
+/// result for any number of threads. \throws InputError if exposures are weighted, or
+/// the stream is of version 4.
 [[nodiscard]] ScheduleCheck check_schedule(StreamReader& reader);
 
 }  // namespace stipple

@@ -34,6 +34,7 @@ StretchedSlots::StretchedSlots(const StreamHeader& header, std::uint64_t max_byt
     : header_(header), max_bytes_(max_bytes) {}
 
 void StretchedSlots::set_up() {
+    if (header_.may_switch) return;  // of several schedules
     const auto& [kind, exposure_slots, seed] = header_.schedule_source;
     if (kind == ScheduleSource::Kind::kRandom &&
         random_schedule_bytes(header_.shape.rows, header_.shape.cols, exposure_slots) > max_bytes_)

@@ -42,6 +42,17 @@ std::string special_text(const StreamHeader& header) {
     return text;
 }
 
+/// Where the schedule changes, if it does: the first ten places.
+std::string switches_text(const StreamHeader& header) {
+    constexpr std::size_t kShown = 10;
+    const std::size_t all = header.switches.size();
+    std::string text;
+    for (std::size_t i = 0; i < std::min(all, kShown); ++i)
+        text += fmt::format("\nfrom slot    {} schedule {}", header.switches[i].slot,
+                            header.switches[i].name);
+    return all > kShown ? text + fmt::format(", and {} more", all - kShown) : text;
+}
+
 }  // namespace
 
 nlohmann::ordered_json filter_json(ColourFilter cfa) {
@@ -57,6 +68,9 @@ nlohmann::ordered_json stream_json(const StreamHeader& header, const StreamRepor
     json["calibration"] =
         json_of([&](const auto& add) { visit_calibration_figures(header.calibration, add); });
     json["schedule"] = json_of([&](const auto& add) { visit_schedule_figures(header, add); });
+    for (const ScheduleSwitch& part : header.switches)
+        json["switches"].push_back(
+            json_of([&](const auto& add) { visit_switch_figures(part, add); }));
     json["provenance"] = header.provenance;
     json.update(json_of([&](const auto& add) { visit_report_figures(report, add); }));
     auto& damage = json["damage"] = nlohmann::ordered_json::array();
@@ -89,13 +103,13 @@ std::string stream_text(const StreamHeader& header, const StreamReport& report) 
         "{}"
         "schedule     {}: tile {} x {}, period {} slots, {:.4g} samples per pixel and slot,\n"
         "             light throughput {:.1f} %\n"
-        "holds        {} slots, {} packets, {} samples, {} payload bits",
+        "holds        {} slots, {} packets, {} samples, {} payload bits{}",
         header.shape.cols, header.shape.rows, header.shape.planes, header.slot_us,
         calibration.bit_depth, calibration.gain_e_per_dn, calibration.black_level_dn,
         calibration.read_noise_e, calibration.full_well_e, calibration.electrons_per_unit,
         special_text(header), header.schedule_name, tile.rows, tile.cols, schedule.period_slots(),
         schedule.samples_per_pixel_slot(), 100 * schedule.light_throughput(), report.slots,
-        report.packets, report.samples, report.payload_bits);
+        report.packets, report.samples, report.payload_bits, switches_text(header));
 }
 
 }  // namespace stipple

@@ -59,8 +59,11 @@ class Viewer:
             connection.close()
 
     def picture(self, video, slot, **keys):
-        status, fields, data = self.ask(f"plane/v{video}-{slot}", **{"viewer": "t", "wait": 20000, **keys})
-        assert status == 200, data
+        for _ in range(20):  # a slow program answers without a picture meanwhile
+            status, fields, data = self.ask(f"plane/v{video}-{slot}", **{"viewer": "t", "wait": 20000, **keys})
+            assert status == 200, data
+            if data:
+                break
         return fields, np.frombuffer(data, "<u2")
 
     def json(self, path, **keys):

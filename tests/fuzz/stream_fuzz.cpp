@@ -8,6 +8,7 @@
 #include "stream/crc32c.h"
 #include "stream/header_codec.h"
 #include "stream/little_endian.h"
+#include "stream/schedule_switch.h"
 #include "stream/stream_reader.h"
 #include "tests/fuzz/require.h"
 #include "tests/fuzz/stream_pieces.h"
@@ -24,10 +25,29 @@ void check_packet(const StreamHeader& header, const SamplePacket& packet) {
         require(dn >> static_cast<unsigned>(header.calibration.bit_depth) == 0);
     if ((packet.flags & SamplePacket::kDropped) != 0)
         require(packet.dn.empty());
-    else if (header.shape.pixels() < 100000)
+    else if (const SchedulePart part = schedule_at(header, packet.slot);
+             header.shape.pixels() < 100000)
         require(packet.dn.size() == static_cast<std::size_t>(header.shape.planes) *
-                                        count_due(header.schedule, packet.slot, packet.first_row,
-                                                  packet.rows, header.shape.cols));
+                                        count_due(*part.schedule, readout_slot(part, packet.slot),
+                                                  packet.first_row, packet.rows,
+                                                  header.shape.cols));
+}
+
+/// An exposure that is read has 64 slots at most, the last one open, or it is unknown.
+void check_exposures(const StreamHeader& header, const SamplePacket& packet) {
+    const auto parts = schedule_parts(header);
+    const SchedulePart part = schedule_at(header, packet.slot);
+    if (part.first_slot == 0 || header.shape.pixels() > 100) return;
+    for (int row = packet.first_row; row < packet.first_row + packet.rows; ++row)
+        for_each_readout(
+            *part.schedule, readout_slot(part, packet.slot), row, header.shape.cols,
+            [&](int col, int) {
+                const auto read = read_exposure(parts, {packet.slot, row, col});
+                if (!read) return;
+                require(read->first_slot >= 0 && (read->open_slots & 1U) != 0);
+                require(read->open_slots >> static_cast<unsigned>(packet.slot - read->first_slot) ==
+                        1);
+            });
 }
 
 /// There is one way only to write a header, but for the version.
@@ -52,8 +72,10 @@ Reading read(std::span<const std::uint8_t> bytes, ReadPolicy policy) {
     try {
         StreamReader reader(file.path(), policy);
         check_header(reader.header(), bytes);
+        reader.follow_switches();
         for (SamplePacket packet; reader.next(packet);) {
             if (policy != ReadPolicy::kAnySchedule) check_packet(reader.header(), packet);
+            check_exposures(reader.header(), packet);
             require(packet.dn.size() <= reader.header().shape.sites());
             reading.packets.push_back(packet);
         }
@@ -70,6 +92,7 @@ Reading read(std::span<const std::uint8_t> bytes, ReadPolicy policy) {
 void check_seek(std::span<const std::uint8_t> bytes, const Reading& whole) {
     const MemoryFile file(bytes);
     StreamReader reader(file.path());
+    reader.follow_switches();
     const std::int64_t begin = reader.seek(whole.report.slots / 2);
     std::vector<SamplePacket> expected = whole.packets, packets;
     std::erase_if(expected, [&](const SamplePacket& packet) { return packet.slot < begin; });

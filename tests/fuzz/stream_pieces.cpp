@@ -113,7 +113,7 @@ void fill_slots(std::vector<Piece>& pieces) {
         return;
     }
     const auto& [rows, cols, planes] = header->shape;
-    if (header->shape.pixels() > kMaxPixels) return;
+    if (header->shape.pixels() > kMaxPixels || header->may_switch) return;
     const int depth = header->calibration.bit_depth;
     std::int64_t slot = 0;
     for (Piece& piece : pieces) {
@@ -137,22 +137,30 @@ void fill_slots(std::vector<Piece>& pieces) {
 
 /// What the index must hold, up to its own piece.
 void fill_index(const std::vector<Piece>& pieces, Piece& index) {
-    std::vector<IndexEntry> entries;
+    std::vector<IndexEntry> entries, switches;
     std::uint64_t offset = 0;
     std::uint64_t slots = 0;
     for (const Piece& piece : pieces) {
         if (&piece == &index) break;
         if (is_packet(piece)) {
             const auto slot = load<std::uint64_t>(&piece.head[8]);
+            const bool next = load<std::uint16_t>(&piece.head[6]) == switches.size() + 1;
+            if (piece.head[4] == 4 && next) switches.push_back({slot, offset});
+            if (piece.head[4] == 4) {
+                offset += piece.size();
+                continue;
+            }
             if (entries.empty() || slot > entries.back().slot) entries.push_back({slot, offset});
             slots = slot + 1;
         }
         offset += piece.size();
     }
-    index.body.resize(entries.size() * kIndexEntryBytes);
-    store_index(entries, index.body);
+    store(&index.head[6], static_cast<std::uint16_t>(switches.size()));
     store(&index.head[8], slots);
     store(&index.head[20], static_cast<std::uint32_t>(entries.size()));
+    entries.insert(entries.end(), switches.begin(), switches.end());
+    index.body.resize(entries.size() * kIndexEntryBytes);
+    store_index(entries, index.body);
 }
 
 void mend(std::vector<Piece>& pieces, Dice& dice) {
@@ -188,7 +196,7 @@ void mend(std::vector<Piece>& pieces, Dice& dice) {
 
 bool asks_for_much(View bytes) {
     constexpr std::size_t kMaxSites = 4096;
-    return bytes[84] == 1 &&
+    return (bytes[84] == 1 || bytes[8] == 4) &&
            std::size_t{load<std::uint16_t>(&bytes[16])} * load<std::uint16_t>(&bytes[18]) >
                kMaxSites;
 }

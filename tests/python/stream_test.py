@@ -58,6 +58,23 @@ class StreamTest(ProgramTest):
             expected = 1000 * 0.2 * samples["light_slots"] * 255 / 2000  # Eq. 1 without noise
             self.assertLess(abs(samples["dn"] - expected).max(initial=0), 30)
 
+    def test_across_a_switch_each_slot_of_a_pixel_is_in_one_exposure(self):
+        self.write_array("light.npy", np.full((60, 8, 12), 0.1))
+        self.succeed("emulate", "light.npy", "-o", "clip.stipple", "--switch", "20:schedule=tiled,seed=3",
+                     "--switch", "24:seed=4")
+        stream = stipple.Stream.open(self.folder / "clip.stipple")
+        begin = np.zeros((8, 12), int)
+        for slot, samples in enumerate(stream):
+            at = samples["row"], samples["col"]
+            first = slot + 1 - samples["exposure_slots"].astype(int)
+            self.assertTrue((first[begin[at] > 0] == begin[at][begin[at] > 0]).all())
+            self.assertTrue((samples["light_slots"] == samples["exposure_slots"]).all())
+            begin[at] = slot + 1
+        self.assertTrue((begin > 50).all())
+        self.assertTrue(stream.counts()["complete"])
+        with self.assertRaisesRegex(ValueError, "may change its schedule"):
+            stream.exposures()
+
     def test_a_slot_beyond_the_end_is_an_IndexError(self):
         stream = stipple.emulate(np.full((5, 6, 10), 0.2))
         for slot in (-1, 5):

@@ -174,7 +174,7 @@ std::vector<GoldenCase> rules() {
     };
     std::string reserved = whole.bytes;
     PacketHeader fields = packet_header_at(reserved, begins[1]);
-    fields.reserved = 1;
+    fields.switches = 1;
     reserved.replace(begins[1], begins[2] - begins[1],
                      framed(fields, packet(1).substr(kPacketHeaderBytes), whole.seed()));
     std::string after_index = whole.bytes;

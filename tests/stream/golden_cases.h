@@ -16,4 +16,7 @@ namespace stipple {
 /// The same of version 3: weights, and no noise.
 [[nodiscard]] std::vector<GoldenCase> golden_cases_3();
 
+/// The same of version 4: switches of the schedule.
+[[nodiscard]] std::vector<GoldenCase> golden_cases_4();
+
 }  // namespace stipple

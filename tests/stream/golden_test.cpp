@@ -5,6 +5,7 @@
 #include <nlohmann/json.hpp>
 
 #include "core/error.h"
+#include "stream/schedule_switch.h"
 #include "tests/stream/golden_cases.h"
 #include "tests/stream/stream_bytes.h"
 #include "tests/support/golden_file.h"
@@ -18,6 +19,8 @@ using Json = nlohmann::ordered_json;
 const std::filesystem::path kFolder = project_path("tests/golden/stream");
 /// Streams with weights, and without noise.
 const std::filesystem::path kFolder3 = project_path("tests/golden/stream_version_3");
+/// Streams whose schedule changes.
+const std::filesystem::path kFolder4 = project_path("tests/golden/stream_version_4");
 /// As this library wrote and read them when it knew version 1 only.
 const std::filesystem::path kFolder1 = project_path("tests/golden/stream_version_1");
 
@@ -66,6 +69,36 @@ Json to_json(const StreamHeader& header) {
     return json;
 }
 
+Json to_json(const ScheduleSwitch& part) {
+    const ReadoutValues& v = part.values;
+    return {{"number", part.number},
+            {"slot", part.slot},
+            {"rounding", v.rounding == Rounding::kNearest ? "nearest" : "floor"},
+            {"black_level_dn", v.black_level_dn},
+            {"gain_e_per_dn", v.gain_e_per_dn},
+            {"read_noise_e", v.read_noise_e},
+            {"full_well_e", v.full_well_e},
+            {"electrons_per_unit", v.electrons_per_unit},
+            {"schedule_name", part.name},
+            {"schedule", to_json(part.schedule)}};
+}
+
+/// Of each sample of a packet.
+Json exposures_json(const StreamHeader& header, const SamplePacket& packet) {
+    Json json = Json::array();
+    if (packet.dn.empty()) return json;
+    const auto parts = schedule_parts(header);
+    const SchedulePart part = schedule_at(header, packet.slot);
+    const std::int64_t slot = readout_slot(part, packet.slot);
+    for (int row = packet.first_row; row < packet.first_row + packet.rows; ++row)
+        for_each_readout(*part.schedule, slot, row, header.shape.cols, [&](int col, int) {
+            const auto read = read_exposure(parts, {packet.slot, row, col});
+            for (int plane = 0; plane < header.shape.planes; ++plane)
+                json.push_back(read ? Json{read->first_slot, read->open_slots} : Json());
+        });
+    return json;
+}
+
 Json to_json(const SamplePacket& packet) {
     return {{"slot", packet.slot},
             {"first_row", packet.first_row},
@@ -93,13 +126,24 @@ Json refusal(const MemoryFile& file, Action&& action) {
 Json description(const std::string& bytes) {
     const MemoryFile file(bytes);
     Json text;
-    text["strict_error"] = refusal(file, [&] { read_bytes(bytes, ReadPolicy::kStrict); });
+    text["strict_error"] = refusal(file, [&] {
+        StreamReader reader(file.path(), ReadPolicy::kStrict);
+        reader.follow_switches();
+        read_packets(reader);
+    });
     text["error"] = refusal(file, [&] {
         StreamReader reader(file.path());
+        reader.follow_switches();
         text["header"] = to_json(reader.header());
         text["packets"] = Json::array();
-        for (const SamplePacket& packet : read_packets(reader))
+        for (const SamplePacket& packet : read_packets(reader)) {
             text["packets"].push_back(to_json(packet));
+            if (reader.header().may_switch)
+                text["packets"].back()["exposures"] = exposures_json(reader.header(), packet);
+        }
+        if (reader.header().may_switch) text["switches"] = Json::array();
+        for (const ScheduleSwitch& part : reader.header().switches)
+            text["switches"].push_back(to_json(part));
         const StreamReport& report = reader.report();
         text["slots"] = report.slots;
         text["missing_slots"] = report.missing_slots;
@@ -119,6 +163,7 @@ std::vector<GoldenFile> golden_files() {
     std::vector<GoldenFile> files;
     for (const auto& [name, bytes] : golden_cases()) files.push_back({kFolder / name, bytes});
     for (const auto& [name, bytes] : golden_cases_3()) files.push_back({kFolder3 / name, bytes});
+    for (const auto& [name, bytes] : golden_cases_4()) files.push_back({kFolder4 / name, bytes});
     return files;
 }
 
@@ -153,7 +198,7 @@ TEST(GoldenTest, AFileOfVersion1TellsItsSlotsAtOnce) {
 
 TEST(GoldenTest, NoFileIsLeftOver) {
     std::size_t files = 0;
-    for (const auto& folder : {kFolder, kFolder3})
+    for (const auto& folder : {kFolder, kFolder3, kFolder4})
         for (const auto& entry : std::filesystem::directory_iterator(folder))
             if (entry.path().filename() != "README.md") ++files;
     EXPECT_EQ(files, 2 * golden_files().size());

@@ -252,8 +252,8 @@ TEST(HeaderCodecTest, AForeignFileIsCalledForeign) {
         expect_parts(refusal(std::string(length, '#')), {"this is not a sample stream"});
     expect_parts(refusal("\x89STPL\n\x1A\x01\0\0\0\0\0\0\0\0"), {"text-mode transfer"});
     expect_parts(refusal("\tSTPL\r\n\x1A"), {"text-mode transfer"});
-    expect_parts(refusal(std::string("\x89STPL\r\n\x1A\x04\0\0\0\0\0\0\0", 16)),
-                 {"a: byte 8: version 4 of the sample stream; this program reads versions 1 to 3"});
+    expect_parts(refusal(std::string("\x89STPL\r\n\x1A\x05\0\0\0\0\0\0\0", 16)),
+                 {"a: byte 8: version 5 of the sample stream; this program reads versions 1 to 4"});
     expect_parts(refusal(std::string("\x89STPL\r\n\x1A\x01\0\0\0\xFF\xFF\xFF\xFF", 16)),
                  {"a: byte 12: header bytes 4294967295 is outside"});
 }

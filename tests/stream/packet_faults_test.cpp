@@ -61,7 +61,7 @@ TEST(PacketFaultsTest, TheUnchangedPacketIsGood) {
 }
 
 TEST(PacketFaultsTest, ReservedBytesAndUnknownFlagsAreRefused) {
-    expect_refused([](auto& packet, auto&) { packet.reserved = 0x100; },
+    expect_refused([](auto& packet, auto&) { packet.switches = 0x100; },
                    "reserved bytes are not zero");
     expect_refused([](auto& packet, auto&) { packet.flags = 4; }, "unknown flags 0x4");
 }

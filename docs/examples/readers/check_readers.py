@@ -13,6 +13,8 @@ from read_stream import Stream
 
 # of the header of a stream
 NOT_SHOWN = ("n", "p", "s", "random", "calibrated", "weighted", "crc")
+SWITCH = ("number", "slot", "rounding", "black_level_dn", "gain_e_per_dn", "read_noise_e",
+          "full_well_e", "electrons_per_unit", "schedule_name", "schedule")
 CFA = (None, "rggb", "grbg", "gbrg", "bggr")
 
 
@@ -32,8 +34,23 @@ def stream_result(content):
             del header[key]
     keys = ("packets", "slots", "missing_slots", "tail_bytes", "damage")
     found = {key: getattr(stream, key) for key in keys}
+    if stream.switching:
+        found["switches"] = [{key: part[key] for key in SWITCH} for part in stream.parts[1:]]
+        for part in found["switches"]:
+            part["rounding"] = ("nearest", "floor")[part["rounding"]]
+        for packet in stream.packets:
+            packet["exposures"] = exposures(stream, packet)
     strict_error = f"byte {faults[0]}:" if faults else None
     return {"strict_error": strict_error, "error": None, "header": header, **found}
+
+
+def exposures(stream, packet):
+    """[first slot, open slots] of each sample of a packet; None if they are unknown."""
+    if packet["flags"] & 2:  # dropped
+        return []
+    rows = range(packet["first_row"], packet["first_row"] + packet["rows"])
+    due = [sample[3:] for sample in stream.due(packet["slot"], rows)]
+    return [None if first is None else [first, open_slots] for first, open_slots in due]
 
 
 def recording_result(content):

@@ -111,7 +111,7 @@ TEST(JointMeasurementsTest, EqualSensorsBecomeOneWithTheirLight) {
     const SensorSamples sensors[] = {{first.header, first.packets, {}},
                                      {second.header, second.packets, {}}};
     EXPECT_TRUE(collect_joint(sensors, whole(video)).others.empty());
-    const Calibration joint = joint_calibration(sensors);
+    const Calibration joint = joint_calibration(sensors, 0);
     EXPECT_DOUBLE_EQ(joint.electrons_per_unit, 1000);
     // Two readings with 10 electrons, and the rounding of each.
     const auto one = static_cast<double>(SampleNoise(first.header.calibration).variance(0));
