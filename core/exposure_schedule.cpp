@@ -50,33 +50,33 @@ void choose_stores(std::span<const Exposure> exposures, int period_slots,
 ExposureSchedule::ExposureSchedule(int tile_rows, int tile_cols, int period_slots,
                                    std::vector<std::uint32_t> first,
                                    std::vector<Exposure> exposures)
-    : tile_rows_(tile_rows),
-      tile_cols_(tile_cols),
-      period_slots_(period_slots),
-      first_(std::move(first)),
-      exposures_(std::move(exposures)) {
+    : tile_rows_(tile_rows), tile_cols_(tile_cols), period_slots_(period_slots) {
     if (tile_rows < 1 || tile_cols < 1 || tile_rows > kMaxTileSide || tile_cols > kMaxTileSide)
         throw InputError(kWhere, fmt::format("tile {} x {} is outside 1..{} rows and columns",
                                              tile_rows, tile_cols, kMaxTileSide));
     if (period_slots < 1 || period_slots > kMaxPeriodSlots)
         throw InputError(
             kWhere, fmt::format("period {} is outside 1..{} slots", period_slots, kMaxPeriodSlots));
-    if (first_.size() != index(tile_rows) * index(tile_cols) + 1 || first_.front() != 0 ||
-        first_.back() != exposures_.size() || !std::is_sorted(first_.begin(), first_.end()))
+    if (first.size() != pixels() + 1 || first.front() != 0 || first.back() != exposures.size() ||
+        !std::is_sorted(first.begin(), first.end()))
         throw InputError(kWhere, "the list of exposures does not match the tile");
     std::vector<int> zeros(index(period_slots), 0);
-    for (int pixel = 0; pixel < tile_rows * tile_cols; ++pixel) check_pixel(pixel, zeros);
-    if (max_at_once_ == 2) assign_stores();
-    list_due_pixels();
+    auto lists = std::make_shared<Lists>();
+    lists->first = std::move(first);
+    lists->exposures = std::move(exposures);
+    for (int pixel = 0; pixel < tile_rows * tile_cols; ++pixel) check_pixel(*lists, pixel, zeros);
+    if (lists->max_at_once == 2) assign_stores(*lists);
+    list_due_pixels(*lists);
+    lists_ = std::move(lists);
 }
 
-void ExposureSchedule::check_pixel(int pixel, std::span<int> zeros) {
+void ExposureSchedule::check_pixel(Lists& lists, int pixel, std::span<int> zeros) const {
     const auto fail = [&](std::uint32_t slot, std::string_view problem) {
         throw InputError(kWhere, fmt::format("pixel ({}, {}) slot {}: {}", pixel / tile_cols_,
                                              pixel % tile_cols_, slot, problem));
     };
-    const auto begin = exposures_.begin() + first_[index(pixel)];
-    const auto end = exposures_.begin() + first_[index(pixel) + 1];
+    const auto begin = lists.exposures.begin() + lists.first[index(pixel)];
+    const auto end = lists.exposures.begin() + lists.first[index(pixel) + 1];
     std::sort(begin, end,
               [](const Exposure& a, const Exposure& b) { return a.first_slot < b.first_slot; });
     const auto period = static_cast<std::uint32_t>(period_slots_);
@@ -95,7 +95,7 @@ void ExposureSchedule::check_pixel(int pixel, std::span<int> zeros) {
             if (zeros[slot]++ != 0) fail(slot, "two exposures share this slot");
         });
         covered_slots += static_cast<std::uint32_t>(e->span_slots());
-        longest_span_slots_ = std::max(longest_span_slots_, e->span_slots());
+        lists.longest_span_slots = std::max(lists.longest_span_slots, e->span_slots());
         const auto next_begin = e + 1 == end ? begin->first_slot + period : (e + 1)->first_slot;
         if (e->first_slot + static_cast<std::uint32_t>(e->span_slots()) > next_begin)
             interleaved = true;
@@ -103,55 +103,56 @@ void ExposureSchedule::check_pixel(int pixel, std::span<int> zeros) {
     for (auto e = begin; e != end; ++e)
         visit_open(*e, [&](std::uint32_t slot) { zeros[slot] = 0; });
     if (interleaved || covered_slots > period)
-        max_at_once_ = std::max(max_at_once_, max_at_once({begin, end}, zeros));
+        lists.max_at_once = std::max(lists.max_at_once, max_at_once({begin, end}, zeros));
 }
 
-void ExposureSchedule::assign_stores() {
-    stores_.assign(exposures_.size(), 0);
-    for (int row = 0; row < tile_rows_; ++row)
-        for (int col = 0; col < tile_cols_; ++col)
-            choose_stores(exposures(row, col), period_slots_,
-                          std::span(stores_).subspan(first_[pixel(row, col)]));
+void ExposureSchedule::assign_stores(Lists& lists) const {
+    lists.stores.assign(lists.exposures.size(), 0);
+    for (std::size_t p = 0; p < pixels(); ++p)
+        choose_stores(exposures_in(lists, p), period_slots_,
+                      std::span(lists.stores).subspan(lists.first[p]));
 }
 
-void ExposureSchedule::list_due_pixels() {
+void ExposureSchedule::list_due_pixels(Lists& lists) const {
     const auto period = static_cast<std::uint32_t>(period_slots_);
     const auto list_of = [&](const Exposure& e, int tile_row) {
         const auto last = e.first_slot + static_cast<std::uint32_t>(e.span_slots()) - 1;
         return index(static_cast<int>(last % period) * tile_rows_ + tile_row);
     };
-    first_due_.assign(index(period_slots_) * index(tile_rows_) + 1, 0);
+    std::vector<std::uint32_t>& first_due = lists.first_due;
+    first_due.assign(index(period_slots_) * index(tile_rows_) + 1, 0);
     for (int row = 0; row < tile_rows_; ++row)
         for (int col = 0; col < tile_cols_; ++col)
-            for (const Exposure& e : exposures(row, col)) ++first_due_[list_of(e, row) + 1];
-    std::partial_sum(first_due_.begin(), first_due_.end(), first_due_.begin());
-    due_.resize(exposures_.size());
-    std::vector<std::uint32_t> next(first_due_.begin(), first_due_.end() - 1);
+            for (const Exposure& e : exposures_in(lists, pixel(row, col)))
+                ++first_due[list_of(e, row) + 1];
+    std::partial_sum(first_due.begin(), first_due.end(), first_due.begin());
+    lists.due.resize(lists.exposures.size());
+    std::vector<std::uint32_t> next(first_due.begin(), first_due.end() - 1);
     for (int row = 0; row < tile_rows_; ++row)
         for (int col = 0; col < tile_cols_; ++col)
-            for (const Exposure& e : exposures(row, col))
-                due_[next[list_of(e, row)]++] = {static_cast<std::uint16_t>(col),
-                                                 static_cast<std::uint8_t>(e.span_slots()),
-                                                 static_cast<std::uint8_t>(e.light_slots())};
+            for (const Exposure& e : exposures_in(lists, pixel(row, col)))
+                lists.due[next[list_of(e, row)]++] = {static_cast<std::uint16_t>(col),
+                                                      static_cast<std::uint8_t>(e.span_slots()),
+                                                      static_cast<std::uint8_t>(e.light_slots())};
 }
 
 std::span<const Exposure> ExposureSchedule::exposures(int tile_row, int tile_col) const {
-    const std::size_t p = pixel(tile_row, tile_col);
-    return std::span(exposures_).subspan(first_[p], first_[p + 1] - first_[p]);
+    return exposures_in(*lists_, pixel(tile_row, tile_col));
 }
 
 std::span<const DuePixel> ExposureSchedule::due(int phase, int tile_row) const {
     const auto list = index(phase) * index(tile_rows_) + index(tile_row);
-    return std::span(due_).subspan(first_due_[list], first_due_[list + 1] - first_due_[list]);
+    const std::vector<std::uint32_t>& first = lists_->first_due;
+    return std::span(lists_->due).subspan(first[list], first[list + 1] - first[list]);
 }
 
 double ExposureSchedule::samples_per_pixel_slot() const {
     const double pixel_slots = 1.0 * tile_rows_ * tile_cols_ * period_slots_;
-    return static_cast<double>(exposures_.size()) / pixel_slots;
+    return static_cast<double>(lists_->exposures.size()) / pixel_slots;
 }
 
 void ExposureSchedule::set_weights(std::vector<float> weights) {
-    const std::size_t pixels = first_.size() - 1;
+    const std::size_t pixels = this->pixels();
     const std::size_t period = index(period_slots_);
     if (weights.size() != pixels * period)
         throw InputError(kWhere, fmt::format("{} weights for a tile of {} x {} pixels and {} slots",
@@ -161,9 +162,9 @@ void ExposureSchedule::set_weights(std::vector<float> weights) {
     bool all_one = true;
     for (std::size_t pixel = 0; pixel < pixels; ++pixel) {
         std::ranges::fill(open, std::uint8_t{0});
-        for (std::size_t i = first_[pixel]; i < first_[pixel + 1]; ++i)
-            for (std::uint64_t rest = exposures_[i].open_slots; rest != 0; rest &= rest - 1)
-                open[(exposures_[i].first_slot + index(std::countr_zero(rest))) % period] = 1;
+        for (const Exposure& e : exposures_in(*lists_, pixel))
+            for (std::uint64_t rest = e.open_slots; rest != 0; rest &= rest - 1)
+                open[(e.first_slot + index(std::countr_zero(rest))) % period] = 1;
         for (std::size_t slot = 0; slot < period; ++slot) {
             const float weight = weights[slot * pixels + pixel];
             const bool good = open[slot] != 0 ? weight >= kMinSlotWeight && weight <= kMaxSlotWeight
@@ -200,7 +201,7 @@ double ExposureSchedule::light_throughput() const {
 double ExposureSchedule::open_fraction() const {
     const double pixel_slots = 1.0 * tile_rows_ * tile_cols_ * period_slots_;
     double light_slots = 0;
-    for (const Exposure& e : exposures_) light_slots += e.light_slots();
+    for (const Exposure& e : lists_->exposures) light_slots += e.light_slots();
     return light_slots / pixel_slots;
 }
 
@@ -210,8 +211,9 @@ bool ExposureSchedule::gapless() const {
 
 bool ExposureSchedule::operator==(const ExposureSchedule& other) const {
     return tile_rows_ == other.tile_rows_ && tile_cols_ == other.tile_cols_ &&
-           period_slots_ == other.period_slots_ && first_ == other.first_ &&
-           exposures_ == other.exposures_ && weights_ == other.weights_;
+           period_slots_ == other.period_slots_ && weights_ == other.weights_ &&
+           (lists_ == other.lists_ ||
+            (lists_->first == other.lists_->first && lists_->exposures == other.lists_->exposures));
 }
 
 std::size_t count_due(const ExposureSchedule& schedule, std::int64_t slot, int first_row, int rows,

@@ -3,6 +3,7 @@
 #include <bit>
 #include <cstddef>
 #include <cstdint>
+#include <memory>
 #include <span>
 #include <string>
 #include <vector>
@@ -47,7 +48,7 @@ struct DuePixel {
 /// exposures repeat every `period_slots`. No two exposures of a pixel share a slot, so each
 /// (pixel, slot) belongs to at most one exposure and the sampling operator has A A^T diagonal.
 /// With weights an exposure collects weight x light in each slot, as behind a grey mask; without
-/// them all weights are 1.
+/// them all weights are 1. Copies share the list of exposures, which never changes.
 class ExposureSchedule {
   public:
     /// `exposures[first[p] .. first[p + 1])` belong to tile pixel p = row * tile_cols + col.
@@ -66,7 +67,7 @@ class ExposureSchedule {
     [[nodiscard]] std::span<const float> weights() const { return weights_; }
     /// Weight of a tile pixel in slot `phase` (0 .. period - 1). Precondition: weighted().
     [[nodiscard]] float weight(int phase, int tile_row, int tile_col) const {
-        return weights_[index(phase) * (first_.size() - 1) + pixel(tile_row, tile_col)];
+        return weights_[index(phase) * pixels() + pixel(tile_row, tile_col)];
     }
 
     /// Sum of the weights of the open slots of an exposure of a tile pixel; without weights their
@@ -90,19 +91,19 @@ class ExposureSchedule {
     /// True if every pixel collects light in every slot.
     [[nodiscard]] bool gapless() const;
     /// True if some pixel begins an exposure before an earlier one has ended (two-bucket pixels).
-    [[nodiscard]] bool interleaved() const { return max_at_once_ > 1; }
+    [[nodiscard]] bool interleaved() const { return charge_stores() > 1; }
     /// Max simultaneous exposures of a pixel: the charge stores that it needs.
-    [[nodiscard]] int charge_stores() const { return max_at_once_; }
+    [[nodiscard]] int charge_stores() const { return lists_->max_at_once; }
     /// Max span of an exposure; 0 without exposures.
-    [[nodiscard]] int longest_span_slots() const { return longest_span_slots_; }
+    [[nodiscard]] int longest_span_slots() const { return lists_->longest_span_slots; }
     /// The charge store (0 or 1) of exposure `i` of a tile pixel that begins in the given
     /// repetition (begin slot / period_slots). Simultaneous exposures have different stores. The
     /// store alternates between repetitions if an odd number of exposures follow each other around
     /// the period. Precondition: charge_stores() <= 2.
     [[nodiscard]] int store(int tile_row, int tile_col, std::size_t i,
                             std::int64_t repetition) const {
-        if (stores_.empty()) return 0;
-        return stores_[first_[pixel(tile_row, tile_col)] + i] >> (repetition & 1) & 1;
+        if (lists_->stores.empty()) return 0;
+        return lists_->stores[lists_->first[pixel(tile_row, tile_col)] + i] >> (repetition & 1) & 1;
     }
 
     bool operator==(const ExposureSchedule&) const;
@@ -111,24 +112,33 @@ class ExposureSchedule {
     [[nodiscard]] std::size_t pixel(int tile_row, int tile_col) const {
         return row_major(tile_row, tile_col, tile_cols_);
     }
+    [[nodiscard]] std::size_t pixels() const { return index(tile_rows_) * index(tile_cols_); }
+
+    struct Lists {
+        int max_at_once = 1;
+        int longest_span_slots = 0;
+        std::vector<std::uint32_t> first;
+        std::vector<Exposure> exposures;
+        std::vector<std::uint8_t> stores;      ///< by exposure, bit 0 in even repetitions, bit 1 in
+                                               ///< odd; empty unless there are two stores
+        std::vector<std::uint32_t> first_due;  ///< by phase * tile_rows + tile_row
+        std::vector<DuePixel> due;
+    };
     /// `zeros` has a zero per slot of the period before and after the call; clearing it for each
     /// pixel would take seconds.
-    void check_pixel(int pixel, std::span<int> zeros);
+    void check_pixel(Lists& lists, int pixel, std::span<int> zeros) const;
     [[nodiscard]] double open_fraction() const;
-    void assign_stores();
-    void list_due_pixels();
+    void assign_stores(Lists& lists) const;
+    void list_due_pixels(Lists& lists) const;
+    [[nodiscard]] std::span<const Exposure> exposures_in(const Lists& lists, std::size_t p) const {
+        return std::span(lists.exposures)
+            .subspan(lists.first[p], lists.first[p + 1] - lists.first[p]);
+    }
 
     int tile_rows_;
     int tile_cols_;
     int period_slots_;
-    int max_at_once_ = 1;
-    int longest_span_slots_ = 0;
-    std::vector<std::uint32_t> first_;
-    std::vector<Exposure> exposures_;
-    std::vector<std::uint8_t> stores_;  ///< by exposure, bit 0 in even repetitions, bit 1 in odd;
-                                        ///< empty unless there are two stores
-    std::vector<std::uint32_t> first_due_;  ///< by phase * tile_rows + tile_row
-    std::vector<DuePixel> due_;
+    std::shared_ptr<const Lists> lists_;
     std::vector<float> weights_;
 };
 
