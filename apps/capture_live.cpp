@@ -59,15 +59,22 @@ LiveCameraOptions camera_options(const LiveArguments& arguments) {
 
 /// A page on the stream while it is written. Null without --view.
 struct LivePage {
-    LivePage(const LiveCamera& camera, const LiveArguments& arguments, const SensorSetup& setup)
-        : live(camera, arguments.black_level_dn, stream_header_of(setup, {}), arguments.output),
+    LivePage(const LiveCamera& camera, const LiveArguments& arguments, const SensorSetup& setup,
+             ColourFilter mosaic)
+        : sensor(arguments.sensor, setup, mosaic,
+                 arguments.preview.file.empty() ? "" : "its preview shows one schedule"),
+          live(camera, arguments.black_level_dn, setup, sensor, arguments.output),
           page({.sources = {}, .camera = &live, .command = own_command()}),
           server(arguments.server,
                  [this](const PageRequest& request) { return page.answer(request); }) {
         say_note("the page of the camera: {}", server.url());
     }
-    ~LivePage() { page.end(); }
+    ~LivePage() {
+        sensor.end();
+        page.end();
+    }
 
+    ViewedSensor sensor;
     LiveView live;
     ViewPage page;
     PageServer server;
@@ -138,6 +145,10 @@ LiveEmulatorOptions emulator_options(const LiveArguments& arguments, LivePreview
         if (preview != nullptr) preview->add(slot.packets, slot.arrival_ns);
         if (page != nullptr) page->live.recent().add(slot.payload, slot.packets, slot.arrival_ns);
     };
+    if (page != nullptr)
+        options.before_slot = [page](StreamRecorder& recorder) {
+            page->live.switch_sensor(recorder);
+        };
     return options;
 }
 
@@ -163,12 +174,16 @@ void live(const LiveArguments& arguments, const RunOptions& run) {
     const std::string& address = arguments.camera.address;
     const FootageOrigin origin =
         live_origin(address, camera, arguments.black_level_dn, [] { throw_if_stopped(); });
-    StreamRecorder recorder = open_stream_output(arguments.output, run, setup, origin);
+    const bool may_switch = arguments.view && no_switch_text(setup).empty();
+    StreamRecorder recorder =
+        open_stream_output(arguments.output, run, setup, origin,
+                           may_switch ? std::optional(Switches{}) : std::nullopt);
     say_warnings(camera.description());
     say_warning(mosaic_warning(setup, to_light.filter()));
     const auto preview = open_preview(arguments.preview, setup);
-    const auto page =
-        arguments.view ? std::make_unique<LivePage>(camera, arguments, setup) : nullptr;
+    const auto page = arguments.view
+                          ? std::make_unique<LivePage>(camera, arguments, setup, to_light.filter())
+                          : nullptr;
     LiveEmulator emulator(camera, to_light, recorder,
                           emulator_options(arguments, preview.get(), page.get()));
     LiveEmulation emulation =

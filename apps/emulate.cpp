@@ -80,9 +80,9 @@ void emulate(const EmulateArguments& options, const RunOptions& run) {
     std::optional<AttachedCalibration> calibration;
     if (!options.calibration.empty())
         calibration.emplace(options.calibration, options.output, setup, run);
-    StreamRecorder recorder =
-        open_stream_output(options.output, run, setup,
-                           options.source.origin([] { throw_if_stopped(); }), options.switches);
+    StreamRecorder recorder = open_stream_output(
+        options.output, run, setup, options.source.origin([] { throw_if_stopped(); }),
+        options.switches.empty() ? std::nullopt : std::optional(options.switches));
     Progress progress(run, "emulating", slots.slots());
     const bool at_end =
         expose_slots(slots, {switches, recorder, truth.get()}, progress, options.source.footage);

@@ -2,33 +2,18 @@
 
 #include <fmt/format.h>
 
-#include <optional>
 #include <string_view>
 #include <utility>
 
 #include "core/error.h"
 #include "core/text.h"
 #include "readout/emulator.h"
+#include "readout/sensor_switch.h"
 
 namespace stipple {
 namespace {
 
 constexpr char kOption[] = "--switch";
-
-/// The parts of a text between commas, but for those in brackets.
-std::vector<std::string> between_commas(std::string_view text) {
-    std::vector<std::string> parts(1);
-    int depth = 0;
-    for (const char c : text) {
-        if (c == '[') ++depth;
-        if (c == ']') --depth;
-        if (c == ',' && depth == 0)
-            parts.emplace_back();
-        else
-            parts.back() += c;
-    }
-    return parts;
-}
 
 /// The slot of a switch. \throws UsageError.
 std::int64_t slot_of(const std::string& text) {
@@ -43,25 +28,10 @@ std::int64_t slot_of(const std::string& text) {
 
 /// Lays what a switch changes over the sensor before it. \throws UsageError.
 void change(const std::string& text, SensorChoice& choice) {
-    const auto after = [](const std::string& part, std::string_view key) {
-        return part.starts_with(key) ? std::optional(part.substr(key.size())) : std::nullopt;
-    };
-    for (const std::string& part : between_commas(text.substr(text.find(':') + 1))) {
-        const auto seed = after(part, "seed=");
-        if (const auto name = after(part, "schedule=")) {
-            choice.schedule = *name;
-            choice.schedule_settings.clear();
-        } else if (const auto setting = after(part, "sensor.")) {
-            choice.settings.push_back(*setting);
-        } else if (const auto own = after(part, "schedule.")) {
-            choice.schedule_settings.push_back(*own);
-        } else if (const auto number = parsed_number<std::uint64_t>(seed.value_or("")); number) {
-            choice.seed = *number;
-        } else {
-            throw UsageError(kOption, fmt::format("{}: {} is none of schedule=NAME, seed=N, "
-                                                  "schedule.KEY=VALUE, sensor.KEY=VALUE",
-                                                  text, part));
-        }
+    try {
+        change_sensor(std::string_view(text).substr(text.find(':') + 1), choice);
+    } catch (const InputError& e) {
+        throw UsageError(kOption, fmt::format("{}: {}", text, e.what()));
     }
 }
 
@@ -90,8 +60,7 @@ SensorSwitches::SensorSwitches(const std::vector<std::string>& texts, SensorChoi
     for (const std::string& text : texts) {
         change(text, first);
         slots_.push_back(slot_of(text));
-        setups_.push_back(set_up_sensor(first, setup.footage, filter));
-        setups_.back().seed = setup.seed;  // of the noise
+        setups_.push_back(set_up_switch(setup, first, filter));
         check_switch(setup, setups_.back(), slots_.back());
     }
 }

@@ -24,12 +24,13 @@ std::string bytes_of(const std::string& file, const SensorSetup& setup) {
 
 StreamRecorder open_stream_output(const std::filesystem::path& file, const RunOptions& run,
                                   const SensorSetup& setup, const FootageOrigin& origin,
-                                  const std::vector<std::string>& switches) {
+                                  const std::optional<Switches>& switches) {
     say_leftover(file);
-    return StreamRecorder(file, setup,
-                          {.force = run.force,
-                           .may_switch = !switches.empty(),
-                           .provenance = provenance_of(setup, origin, switches)});
+    return StreamRecorder(
+        file, setup,
+        {.force = run.force,
+         .may_switch = switches.has_value(),
+         .provenance = provenance_of(setup, origin, switches.value_or(Switches{}))});
 }
 
 AttachedCalibration::AttachedCalibration(const std::string& file, std::filesystem::path stream,

@@ -12,14 +12,16 @@
 
 namespace stipple {
 
+using Switches = std::vector<std::string>;
+
 /// The recorder of a new stream `file`, with the provenance of `setup`, `origin` and the `switches`
-/// of the command line, if the sensor may switch. Reports
-/// leftovers of a killed run on standard error. `setup` must outlive the recorder. \throws
-/// InputError, DeviceError as StreamRecorder.
+/// of the command line; nothing if the sensor never switches. Reports leftovers of a killed run on
+/// standard error. `setup` must outlive the recorder. \throws InputError, DeviceError as
+/// StreamRecorder.
 [[nodiscard]] StreamRecorder open_stream_output(const std::filesystem::path& file,
                                                 const RunOptions& run, const SensorSetup& setup,
                                                 const FootageOrigin& origin,
-                                                const std::vector<std::string>& switches = {});
+                                                const std::optional<Switches>& switches = {});
 
 struct SensorSetup;
 

@@ -7,7 +7,9 @@
 #include <cerrno>
 #include <chrono>
 #include <cstdio>
+#include <filesystem>
 #include <memory>
+#include <optional>
 #include <string>
 #include <system_error>
 #include <thread>
@@ -27,6 +29,7 @@
 #include "capture/camera_kind.h"
 #include "capture/open_camera.h"
 #include "core/error.h"
+#include "core/input_file.h"
 #include "decoder/decode_method.h"
 #include "session/rig_folder.h"
 #include "view/camera_page.h"
@@ -56,13 +59,47 @@ bool is_running_camera(const std::string& source) {
     });
 }
 
+bool is_results_folder(const std::filesystem::path& path) {
+    std::error_code error;
+    return std::filesystem::is_regular_file(path / "table.csv", error);
+}
+
 /// \throws InputError for what a page does not show.
 void check_source(const std::string& source) {
     if (is_running_camera(source))
         throw InputError(source, "a running camera has a page of its own; leave the others out");
-    if (is_rig_folder(source))
-        throw InputError(source, "is a rig; a page shows its streams, or its decoded video");
+    if (is_results_folder(source))
+        throw InputError(source,
+                         "results of explore have a page of their own; leave the others out");
 }
+
+/// The streams of a rig, or what is no rig itself.
+std::vector<std::filesystem::path> files_of(const std::string& source) {
+    if (!is_rig_folder(source)) return {source};
+    std::vector<std::filesystem::path> files;
+    for (const StreamReader& reader : open_rig_folder(source, ReadPolicy::kTolerant).readers)
+        files.emplace_back(reader.name());
+    return files;
+}
+
+/// The page that `explore` has written into its folder of results, and may write again.
+struct ResultsPage {
+    std::filesystem::path file;
+
+    /// \throws InputError without a page.
+    explicit ResultsPage(const std::filesystem::path& folder) : file(folder / "report.html") {
+        if (!std::filesystem::exists(file))
+            throw InputError(folder.string(),
+                             "has results of explore without their page; run it again without " +
+                                 Parameter{"no-report"});
+    }
+    [[nodiscard]] std::optional<PageAnswer> answer(const PageRequest& request) const {
+        if (!request.path.empty() || request.acts) return {};
+        const auto bytes = read_file(file);
+        return PageAnswer{"text/html; charset=utf-8", {bytes.begin(), bytes.end()}};
+    }
+    void end() const {}
+};
 
 ViewedCameraOptions camera_options(const ViewArguments& arguments) {
     const std::string& address = arguments.sources.front();
@@ -100,17 +137,14 @@ void open_browser(std::string url) {
         say_warning("xdg-open (package xdg-utils) is not there; open the address in a browser");
 }
 
-/// Shows `page` until a signal comes.
+/// Serves a page with these figures until a signal comes.
 template <typename Page>
-void serve(Page& page, const ViewArguments& arguments, JsonFile& json, const RunOptions& run) {
+void serve(Page& page, nlohmann::ordered_json figures, const ViewArguments& arguments,
+           JsonFile& json, const RunOptions& run) {
     const PageServer server(arguments.server,
                             [&](const PageRequest& request) { return page.answer(request); });
-    const FrameShape shape = page.shape();
-    json.write({{"url", server.url()},
-                {"slots", page.slots()},
-                {"rows", shape.rows},
-                {"cols", shape.cols},
-                {"planes", shape.planes}});
+    figures["url"] = server.url();
+    json.write(figures);
     run.say(fmt::format("{}\nOpen this address in a browser. Ctrl-C ends the page.", server.url()));
     if (std::fflush(stdout) != 0)  // a page whose address nobody sees
         throw std::system_error(errno, std::generic_category(), "standard output");
@@ -120,19 +154,33 @@ void serve(Page& page, const ViewArguments& arguments, JsonFile& json, const Run
     throw_if_stopped();
 }
 
+template <typename Page>
+nlohmann::ordered_json figures_of(Page& page) {
+    const FrameShape shape = page.shape();
+    return {{"slots", page.slots()},
+            {"rows", shape.rows},
+            {"cols", shape.cols},
+            {"planes", shape.planes}};
+}
+
 void view(const ViewArguments& arguments, const RunOptions& run) {
     JsonFile json(run);
-    if (arguments.sources.size() == 1 && is_running_camera(arguments.sources.front())) {
+    const std::string& first = arguments.sources.front();
+    if (arguments.sources.size() == 1 && is_running_camera(first)) {
         CameraPage page(camera_options(arguments), view_options(arguments));
-        return serve(page, arguments, json, run);
+        return serve(page, figures_of(page), arguments, json, run);
+    }
+    if (arguments.sources.size() == 1 && is_results_folder(first)) {
+        const ResultsPage page{first};
+        return serve(page, {}, arguments, json, run);
     }
     ViewOptions options = view_options(arguments);
     for (const std::string& source : arguments.sources) {
         check_source(source);
-        options.sources.emplace_back(source);
+        for (const auto& file : files_of(source)) options.sources.push_back(file);
     }
     ViewPage page(options);
-    serve(page, arguments, json, run);
+    serve(page, figures_of(page), arguments, json, run);
 }
 
 void add_running_camera_options(Command& command, ViewArguments& options) {
@@ -159,9 +207,10 @@ void add_view(Command& app, Action& action) {
         app.add_command("view", "Streams and videos in the browser, any slot at once");
     const auto options = std::make_shared<ViewArguments>();
     command
-        .add_option("SOURCE", options->sources,
-                    "sample streams, whole or growing; footage, decoded videos, recordings; or a "
-                    "running camera")
+        .add_option(
+            "SOURCE", options->sources,
+            "sample streams, whole or growing; rigs, footage, decoded videos, recordings; or "
+            "a running camera; or results of explore")
         .required()
         .input();
     command.add_option("--truth", options->truth, "footage that the sensor saw")

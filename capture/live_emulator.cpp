@@ -111,6 +111,7 @@ void LiveEmulator::hold_missing(const FrameRecord& record) {
 
 /// `slot` gets its packets here.
 void LiveEmulator::expose(const LiveSlot& slot, bool is_read) {
+    if (options_.before_slot) options_.before_slot(recorder_);
     const auto packets = is_read ? recorder_.expose(light_) : recorder_.expose_unread(light_);
     if (options_.show) options_.show({slot.payload, packets, slot.arrival_ns});
 }

@@ -38,6 +38,8 @@ struct LiveSlot {
 struct LiveEmulatorOptions {
     CaptureLimits limits = {};
     double late_after_slots = 2;  ///< from frame in to packets out
+    /// Before each slot; may be empty.
+    std::function<void(StreamRecorder& recorder)> before_slot = {};
     /// Given each slot; may be empty.
     std::function<void(const LiveSlot& slot)> show = {};
     /// Told the first time that frames are left out; may be empty.

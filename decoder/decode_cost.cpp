@@ -23,7 +23,21 @@ int longest_span_slots(std::span<const RigStream> rig) {
     return longest;
 }
 
+int longest_span_at(const StreamHeader& header, std::int64_t core_begin) {
+    int longest = header.schedule.longest_span_slots();
+    for (const ScheduleSwitch& part : header.switches) {
+        if (part.slot > core_begin + kCoreSlots + kMaxHaloSlots) break;
+        if (part.slot <= core_begin - kMaxExposureSlots) longest = 0;  // of schedules before
+        longest = std::max(longest, part.longest_span_slots);
+    }
+    return longest;
+}
+
 }  // namespace
+
+std::int64_t halo_at(const StreamHeader& header, std::int64_t core_begin) {
+    return halo_slots(longest_span_at(header, core_begin));
+}
 
 std::int64_t max_halo_slots(std::span<const RigStream> rig) {
     const bool may_switch = rig.front().reader.header().may_switch;
@@ -31,13 +45,9 @@ std::int64_t max_halo_slots(std::span<const RigStream> rig) {
 }
 
 std::int64_t halo_at(std::span<const RigStream> rig, std::int64_t core_begin) {
-    const StreamHeader& header = rig.front().reader.header();
-    int longest = longest_span_slots(rig);
-    for (const ScheduleSwitch& part : header.switches) {
-        if (part.slot > core_begin + kCoreSlots + kMaxHaloSlots) break;
-        if (part.slot <= core_begin - kMaxExposureSlots) longest = 0;  // of schedules before
-        longest = std::max(longest, part.longest_span_slots);
-    }
+    int longest = 0;
+    for (const RigStream& stream : rig)
+        longest = std::max(longest, longest_span_at(stream.reader.header(), core_begin));
     return halo_slots(longest);
 }
 

@@ -11,6 +11,8 @@ namespace stipple {
 /// it. Switches of the schedule count up to the last slot that a block may need, whether later ones
 /// are known or not. At most max_halo_slots.
 [[nodiscard]] std::int64_t halo_at(std::span<const RigStream> rig, std::int64_t core_begin);
+/// The same of one sensor.
+[[nodiscard]] std::int64_t halo_at(const StreamHeader& header, std::int64_t core_begin);
 [[nodiscard]] std::int64_t max_halo_slots(std::span<const RigStream> rig);
 
 /// Slots that `decode_rig` computes to deliver the first `frames` of `slots`: whole blocks.

@@ -2,9 +2,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <numeric>
 #include <utility>
 
+#include "decoder/decode_cost.h"
 #include "decoder/decode_options.h"
 #include "decoder/measurements.h"
 #include "decoder/reconstruct.h"
@@ -29,10 +31,17 @@ DecodeOptions options_of(DecodeMethod method) {
     return options;
 }
 
+/// The largest of a figure of the schedules of a stream.
+int most_of(const StreamHeader& header, const std::function<int(const ExposureSchedule&)>& figure) {
+    int most = figure(header.schedule);
+    for (const ScheduleSwitch& part : header.switches) most = std::max(most, figure(part.schedule));
+    return most;
+}
+
 /// True if each pixel has a sample in any window of `live`, the shortest of which is the first one.
 bool in_live_window(const StreamHeader& header, DecodeMethod method) {
     return method == DecodeMethod::kLive &&
-           slots_with_a_sample(header.schedule) <= live_window(0, LiveWindow::kMaxSlots).slots();
+           most_of(header, slots_with_a_sample) <= live_window(0, LiveWindow::kMaxSlots).slots();
 }
 
 double max_voxels_of(const StreamHeader& header, DecodeMethod method) {
@@ -42,8 +51,8 @@ double max_voxels_of(const StreamHeader& header, DecodeMethod method) {
 
 VideoWindow region_of(const StreamHeader& header, const PreviewOptions& options) {
     const FrameShape whole = decoded_shape(header);
-    VideoWindow region{.slots = std::max(kMinSlots, 2 * header.schedule.longest_span_slots()),
-                       .shape = whole};
+    const int longest = most_of(header, std::mem_fn(&ExposureSchedule::longest_span_slots));
+    VideoWindow region{.slots = std::max(kMinSlots, 2 * longest), .shape = whole};
     if (in_live_window(header, options.method)) region.slots = LiveWindow::kMaxSlots;
     const double max_voxels = max_voxels_of(header, options.method);
     const double scale =
@@ -105,8 +114,8 @@ PreviewSlots PreviewDecoder::newest(std::int64_t end) const {
 PreviewSlots PreviewDecoder::around(std::int64_t slot, std::int64_t slots) const {
     slots = std::max(slots, slot + 1);
     if (in_live_window_) {
-        const HaloRange block = slot_range(block_begin(block_of(slot, slots)), slots,
-                                           halo_slots(header_.schedule.longest_span_slots()));
+        const std::int64_t core_begin = block_begin(block_of(slot, slots));
+        const HaloRange block = slot_range(core_begin, slots, halo_at(header_, core_begin));
         const LiveWindow window = live_window(static_cast<int>(slot - block.begin),
                                               static_cast<int>(block.end - block.begin));
         return {{block.begin + window.begin, block.begin + window.core_begin,

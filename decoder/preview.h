@@ -43,7 +43,7 @@ struct PreviewSlots {
 /// some hundred MB: of a frame that is too large only the middle is decoded.
 class PreviewDecoder {
   public:
-    /// `header` must outlive this: its schedule may take 30 MB.
+    /// `header` must outlive this. It decodes the slots of all its schedules.
     PreviewDecoder(const StreamHeader& header, const PreviewOptions& options);
 
     /// Number of slots that a frame is decoded from, where the stream has as many.

@@ -47,7 +47,6 @@ StreamHeader stream_header_of(const SensorSetup& setup, std::string provenance) 
 
 Emulator::Emulator(const SensorSetup& setup, std::int64_t first_slot)
     : setup_(setup),
-      schedule_(&setup.schedule.schedule),
       filters_(calibration_of(setup.params).tile),
       sensor_(setup.params, setup.shape, setup.schedule.schedule, setup.seed, first_slot) {
     if (!setup.timing) return;
@@ -58,8 +57,8 @@ Emulator::Emulator(const SensorSetup& setup, std::int64_t first_slot)
 
 void Emulator::switch_to(const SensorSetup& next) {
     check_switch(setup_, next, stats().slots);
-    sensor_.switch_to(next.params, next.schedule.schedule);
-    schedule_ = &next.schedule.schedule;
+    schedules_.push_back(next.schedule.schedule);
+    sensor_.switch_to(next.params, schedules_.back());
 }
 
 /// Behind colour filters and a grey mask.
@@ -70,10 +69,9 @@ std::span<const float> Emulator::light_on_pixels(std::span<const float> frame) {
         take_mosaic(filter, setup_.footage, frame, mosaic_);
         frame = mosaic_;
     }
-    const ExposureSchedule& schedule = *schedule_;
-    if (schedule.weighted()) {
+    if (schedule().weighted()) {
         masked_.resize(setup_.shape.sites());
-        mask(schedule, stats().slots, setup_.shape, frame, masked_);
+        mask(schedule(), stats().slots, setup_.shape, frame, masked_);
         frame = masked_;
     }
     return frame;
@@ -89,7 +87,7 @@ const SamplePacket& Emulator::expose_unread(std::span<const float> frame) {
     const std::int64_t slot = stats().slots;
     sensor_.expose_unread(light_on_pixels(frame));
     if (readout_cost_) readout_cost_->add_next();
-    ++unread_[kind_of_slot(*schedule_, slot)];
+    ++unread_[kind_of_slot(schedule(), slot)];
     packets_[0] = {slot, 0, setup_.shape.rows, SamplePacket::kDropped, {}};
     return packets_[0];
 }
@@ -124,18 +122,23 @@ std::span<const SamplePacket> Emulator::split_at_overrun(const SlotCost& slot) {
     return std::span(packets_).subspan(whole.rows > 0 ? 0 : 1);
 }
 
+std::string no_switch_text(const SensorSetup& setup) {
+    if (setup.timing)
+        return "the sensor has a section [timing]; the readout of a schedule that changes is not "
+               "modelled";
+    const ExposureSchedule& schedule = setup.schedule.schedule;
+    if (schedule.weighted() || schedule.interleaved())
+        return fmt::format("the schedule {} has weights or interleaved exposures",
+                           setup.schedule.name);
+    return {};
+}
+
 void check_switch(const SensorSetup& from, const SensorSetup& to, std::int64_t slot) {
     const auto refuse = [&](std::string_view why) {
         throw InputError(fmt::format("switch at slot {}", slot), why);
     };
-    if (from.timing || to.timing)
-        refuse(
-            "the sensor has a section [timing]; the readout of a schedule that changes is not "
-            "modelled");
     for (const SensorSetup* setup : {&from, &to})
-        if (setup->schedule.schedule.weighted() || setup->schedule.schedule.interleaved())
-            refuse(fmt::format("the schedule {} has weights or interleaved exposures",
-                               setup->schedule.name));
+        if (const std::string text = no_switch_text(*setup); !text.empty()) refuse(text);
     SensorParams same = to.params;
     same.rounding = from.params.rounding;
     same.full_scale_e = from.params.full_scale_e;

@@ -3,6 +3,7 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <deque>
 #include <map>
 #include <optional>
 #include <span>
@@ -27,9 +28,9 @@ class Emulator {
     /// exposures that began earlier lack light (lead_in_slots).
     explicit Emulator(const SensorSetup& setup, std::int64_t first_slot = 0);
 
-    /// From the next slot on the sensor has the schedule of `next`, which must outlive the
-    /// emulator, and the values of its readout. Fixed patterns and noise remain those of the first
-    /// setup. \throws InputError as check_switch.
+    /// From the next slot on, not the first one, the sensor has the schedule of `next` and the
+    /// values of its readout. Fixed patterns and noise remain those of the first setup. \throws
+    /// InputError as check_switch.
     void switch_to(const SensorSetup& next);
 
     /// Exposes the next slot to `frame` (of the footage's shape, order (plane, row, col)), behind
@@ -42,7 +43,7 @@ class Emulator {
     [[nodiscard]] const SamplePacket& expose_unread(std::span<const float> frame);
 
     [[nodiscard]] const SensorSetup& setup() const { return setup_; }
-    [[nodiscard]] bool switched() const { return schedule_ != &setup_.schedule.schedule; }
+    [[nodiscard]] bool switched() const { return !schedules_.empty(); }
     /// Transmittances of the filters before the pixels, as responsivities; empty if there are none.
     [[nodiscard]] const CalibrationTile& filters() const { return filters_; }
     [[nodiscard]] const ReadoutStats& stats() const { return sensor_.stats(); }
@@ -58,11 +59,14 @@ class Emulator {
     }
 
   private:
+    [[nodiscard]] const ExposureSchedule& schedule() const {
+        return switched() ? schedules_.back() : setup_.schedule.schedule;
+    }
     [[nodiscard]] std::span<const float> light_on_pixels(std::span<const float> frame);
     [[nodiscard]] std::span<const SamplePacket> split_at_overrun(const SlotCost& slot);
 
     const SensorSetup& setup_;
-    const ExposureSchedule* schedule_;  ///< of the last switch, or of the setup
+    std::deque<ExposureSchedule> schedules_;  ///< since the first switch
     CalibrationTile filters_;
     CodedSensor sensor_;
     std::optional<ReadoutCost> readout_cost_;
@@ -72,6 +76,10 @@ class Emulator {
     std::vector<float> mosaic_;           ///< of light in colour behind colour filters
     std::vector<float> masked_;           ///< light behind a grey mask
 };
+
+/// Why a sensor cannot switch at all: a section [timing], weights, interleaved exposures. Empty if
+/// it can.
+[[nodiscard]] std::string no_switch_text(const SensorSetup& setup);
 
 /// \throws InputError if a sensor cannot switch from one setup to the other between two slots: it
 /// has a section [timing], a schedule has weights or interleaved exposures, or other parameters

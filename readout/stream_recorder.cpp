@@ -21,10 +21,11 @@ StreamRecorder::StreamRecorder(const std::filesystem::path& file, const SensorSe
 
 StreamRecorder::~StreamRecorder() = default;
 
-void StreamRecorder::switch_to(const SensorSetup& next) {
+ScheduleSwitch StreamRecorder::switch_to(const SensorSetup& next) {
     check_switch(emulator_->setup(), next, emulator_->stats().slots);
-    writer_.switch_schedule(switch_of(next));
+    const ScheduleSwitch& written = writer_.switch_schedule(switch_of(next));
     emulator_->switch_to(next);
+    return written;
 }
 
 std::span<const SamplePacket> StreamRecorder::expose(std::span<const float> frame) {

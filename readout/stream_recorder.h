@@ -29,9 +29,9 @@ class StreamRecorder {
     ~StreamRecorder();
 
     /// As Emulator::switch_to, in the stream, too. Precondition: options.may_switch, and a slot was
-    /// exposed. \throws InputError as Emulator::switch_to and StreamWriter::switch_schedule: then
-    /// it goes on as before. DeviceError.
-    void switch_to(const SensorSetup& next);
+    /// exposed. Returns what the stream says of it. \throws InputError as Emulator::switch_to and
+    /// StreamWriter::switch_schedule: then it goes on as before. DeviceError.
+    ScheduleSwitch switch_to(const SensorSetup& next);
 
     /// Exposes the next slot to `frame` (of the footage's shape, order (plane, row, col)) and
     /// writes its samples, without those of dropped rows.

@@ -85,7 +85,7 @@ void StreamWriter::write(const SamplePacket& packet) {
         impl_->append(std::exchange(impl_->copy, {}));
 }
 
-void StreamWriter::switch_schedule(ScheduleSwitch next) {
+const ScheduleSwitch& StreamWriter::switch_schedule(ScheduleSwitch next) {
     Impl& stream = *impl_;
     const auto [slot, row] = stream.order.expected();
     assert(stream.header.may_switch && slot > 0 && row == 0);
@@ -108,7 +108,7 @@ void StreamWriter::switch_schedule(ScheduleSwitch next) {
     frame_packet(header, stream.copy, stream.seed);
     stream.switch_places.push_back({header.slot, stream.file.bytes()});
     stream.append(stream.copy);
-    stream.header.switches.push_back(std::move(next));
+    return stream.header.switches.emplace_back(std::move(next));
 }
 
 void StreamWriter::finish() {

@@ -33,8 +33,8 @@ class StreamWriter {
     /// slot. Precondition: header.may_switch; the last slot has all its rows and is not the first
     /// one. \throws InputError if the values are outside their limits, if the schedule has weights
     /// or interleaved exposures, or if an exposure under way would have more than 64 slots: then
-    /// the stream goes on as before. DeviceError.
-    void switch_schedule(ScheduleSwitch next);
+    /// the stream goes on as before. DeviceError. Returns it as a reader will know it.
+    const ScheduleSwitch& switch_schedule(ScheduleSwitch next);
     /// Marks the missing rows of the last slot as dropped, writes the index and closes the file. No
     /// call of `write` may follow. \throws DeviceError.
     void finish();

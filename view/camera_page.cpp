@@ -57,6 +57,7 @@ void CameraPage::open_anew(const CameraSettings& settings) {
     }
     if (old) old->page.end();
     while (old && old.use_count() > 1) std::this_thread::sleep_for(std::chrono::milliseconds(5));
+    if (old) camera_.sensor = old->camera.sensor();
     old.reset();
     camera_.settings = settings;
     auto opened = std::make_shared<Shown>(camera_, view_);

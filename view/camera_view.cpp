@@ -41,6 +41,27 @@ ordered_json CameraEvents::json() const {
     return events;
 }
 
+ViewedSensor::ViewedSensor(SensorChoice choice, const SensorSetup& setup, ColourFilter mosaic,
+                           std::string fixed)
+    : fixed_(fixed.empty() ? no_switch_text(setup) : std::move(fixed)),
+      control_(std::move(choice), setup, mosaic) {}
+
+void ViewedSensor::change(const std::string& changes, CameraEvents& events) {
+    if (!fixed_.empty()) throw InputError("sensor", fixed_);
+    const std::int64_t slot = control_.change(changes);
+    events.add(fmt::format("from slot {} {}", slot, changes));
+}
+
+void ViewedSensor::apply(std::int64_t slots,
+                         const std::function<std::int64_t(const SensorSetup&)>& switch_to) {
+    if (slots > 0) control_.apply(switch_to);
+}
+
+ordered_json ViewedSensor::json() const {
+    const SensorChoice now = control_.choice();
+    return {{"schedule", now.schedule}, {"seed", now.seed}, {"fixed", or_null(fixed_)}};
+}
+
 std::uint64_t all_lost(const LostFrames& lost) {
     return std::accumulate(lost.begin(), lost.end(), std::uint64_t{0});
 }

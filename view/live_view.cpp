@@ -11,12 +11,26 @@
 
 namespace stipple {
 
-LiveView::LiveView(const LiveCamera& camera, double black_level_dn, StreamHeader header,
-                   std::string file)
+LiveView::LiveView(const LiveCamera& camera, double black_level_dn, const SensorSetup& setup,
+                   ViewedSensor& sensor, std::string file)
     : address_(camera.description().address),
       name_(fmt::format("{} {}", camera.description().vendor, camera.description().model)),
       file_(std::move(file)),
-      recent_(camera.layout(), black_level_dn, std::move(header)) {}
+      sensor_(sensor),
+      recent_(camera.layout(), black_level_dn, stream_header_of(setup, {})) {}
+
+void LiveView::switch_sensor(StreamRecorder& recorder) {
+    sensor_.apply(recorder.emulator().stats().slots, [&](const SensorSetup& next) {
+        ScheduleSwitch made = recorder.switch_to(next);
+        const std::int64_t slot = made.slot;
+        recent_.add(std::move(made));
+        return slot;
+    });
+}
+
+void LiveView::change_sensor(const std::string& changes) {
+    sensor_.change(changes, events_);
+}
 
 void LiveView::note(const LiveEmulation& now) {
     const std::lock_guard lock(mutex_);
@@ -42,6 +56,7 @@ nlohmann::ordered_json LiveView::status() const {
         {"skipped", skipped_},
         {"recording",
          {{"file", file_}, {"frames", frames_}, {"lost", all_lost(totals_.lost)}, {"stop", false}}},
+        {"sensor", sensor_.json()},
         {"events", events_.json()},
         {"ended", nullptr}};
 }

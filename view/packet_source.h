@@ -3,6 +3,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <functional>
+#include <memory>
 
 #include "stream/stream_reader.h"
 
@@ -22,14 +23,17 @@ class PacketSource {
     PacketSource(const PacketSource&) = delete;
     PacketSource& operator=(const PacketSource&) = delete;
 
-    [[nodiscard]] virtual const StreamHeader& header() const = 0;
+    /// With the switches of the schedule so far: a new object when there are more.
+    [[nodiscard]] virtual std::shared_ptr<const StreamHeader> header() const = 0;
     /// Of the packets so far.
     [[nodiscard]] virtual StreamReport report() const = 0;
     /// Looks for more slots.
     [[nodiscard]] virtual SlotExtent extent() = 0;
-    /// Calls `take` with the packets of slots [first, end) that are there, in their order.
-    virtual void visit(std::int64_t first, std::int64_t end,
-                       const std::function<void(const SamplePacket&)>& take) = 0;
+    /// Calls `take` with the packets of slots [first, end) that are there, in their order. Returns
+    /// the header that they belong to.
+    virtual std::shared_ptr<const StreamHeader> visit(
+        std::int64_t first, std::int64_t end,
+        const std::function<void(const SamplePacket&)>& take) = 0;
 
   protected:
     PacketSource() = default;
@@ -38,16 +42,22 @@ class PacketSource {
 /// A file. It may still grow.
 class FilePackets : public PacketSource {
   public:
+    /// \throws InputError as StreamReader::seek.
     explicit FilePackets(StreamReader reader);
 
-    [[nodiscard]] const StreamHeader& header() const override { return reader_.header(); }
+    [[nodiscard]] std::shared_ptr<const StreamHeader> header() const override { return header_; }
     [[nodiscard]] StreamReport report() const override { return reader_.report(); }
     [[nodiscard]] SlotExtent extent() override;
-    void visit(std::int64_t first, std::int64_t end,
-               const std::function<void(const SamplePacket&)>& take) override;
+    std::shared_ptr<const StreamHeader> visit(
+        std::int64_t first, std::int64_t end,
+        const std::function<void(const SamplePacket&)>& take) override;
 
   private:
+    /// Those of the reader, which has only read up to where it is.
+    void take_switches();
+
     StreamReader reader_;
+    std::shared_ptr<const StreamHeader> header_;
     std::int64_t next_slot_ = -1;  ///< whose first packet the reader gives next; -1: not known
     SlotExtent extent_;
 };

@@ -3,10 +3,11 @@
 #include <algorithm>
 #include <utility>
 
-#include "core/colour_filter.h"
 #include "core/index.h"
 #include "decoder/measurements.h"
+#include "stream/schedule_switch.h"
 #include "study/report/report_page.h"
+#include "view/mosaic_picture.h"
 
 namespace stipple {
 namespace {
@@ -19,29 +20,6 @@ std::size_t slots_to_keep(const FrameLayout& layout, const StreamHeader& header)
         static_cast<double>(header.shape.sites()) * header.schedule.samples_per_pixel_slot();
     const double bytes = static_cast<double>(layout.payload_bytes()) + 2 * samples;
     return std::max(kLeastSlots, static_cast<std::size_t>(kMaxBytes / bytes));
-}
-
-/// The light of a mosaic as three planes: that of each colour in the cell of 2 x 2 pixels. Pixels
-/// beyond the last whole cell belong to it.
-std::vector<float> coloured(std::span<const float> mosaic, FrameShape shape, ColourFilter filter) {
-    std::vector<float> light(3 * shape.pixels());
-    for (int row = 0; row < shape.rows; ++row)
-        for (int col = 0; col < shape.cols; ++col) {
-            const int cell_row = std::max(std::min(row / 2 * 2, shape.rows - 2), 0);
-            const int cell_col = std::max(std::min(col / 2 * 2, shape.cols - 2), 0);
-            float sum[3] = {}, count[3] = {};
-            for (int r = cell_row; r < std::min(cell_row + 2, shape.rows); ++r)
-                for (int c = cell_col; c < std::min(cell_col + 2, shape.cols); ++c) {
-                    const auto plane = index(colour_plane(filter, r, c));
-                    sum[plane] += mosaic[row_major(r, c, shape.cols)];
-                    ++count[plane];
-                }
-            for (std::size_t plane = 0; plane < 3; ++plane)
-                if (count[plane] > 0)
-                    light[plane * shape.pixels() + row_major(row, col, shape.cols)] =
-                        sum[plane] / count[plane];
-        }
-    return light;
 }
 
 FrameLayout with_rows(FrameLayout layout, int rows) {
@@ -62,12 +40,13 @@ std::vector<std::uint16_t> codes_of(std::span<const std::uint8_t> payload, int p
 }  // namespace
 
 RecentSlots::RecentSlots(const FrameLayout& layout, double black_level_dn, StreamHeader header)
-    : header_(std::move(header)),
+    : header_(std::make_shared<StreamHeader>(std::move(header))),
       layout_(layout),
+      planes_(decoded_shape(*header_).planes),
       cell_rows_(std::min(layout.height, 2)),
       to_light_(layout, black_level_dn),
       cells_to_light_(with_rows(layout, cell_rows_), black_level_dn),
-      most_(slots_to_keep(layout, header_)) {}
+      most_(slots_to_keep(layout, *header_)) {}
 
 void RecentSlots::add(std::span<const std::uint8_t> payload, std::span<const SamplePacket> packets,
                       std::int64_t arrival_ns) {
@@ -86,6 +65,30 @@ void RecentSlots::add(std::span<const std::uint8_t> payload, std::span<const Sam
     slots_.push_back(std::move(slot));
     report_.slots = ++extent_.slots;
     extent_.first = extent_.slots - static_cast<std::int64_t>(slots_.size());
+}
+
+void RecentSlots::add(ScheduleSwitch next) {
+    const std::lock_guard lock(mutex_);
+    auto header = std::make_shared<StreamHeader>(*header_);
+    // The slots that are there need none of the parts that ended long before them.
+    while (!header->switches.empty() &&
+           header->switches.front().slot + kMaxExposureSlots < extent_.first) {
+        const ScheduleSwitch& first = header->switches.front();
+        header->schedule = first.schedule;
+        header->schedule_source = first.source;
+        header->schedule_name = first.name;
+        header->calibration = with_values(header->calibration, first.values);
+        header->switches.erase(header->switches.begin());
+    }
+    header->switches.push_back(std::move(next));
+    for (std::size_t i = 0; i < header->switches.size(); ++i)
+        header->switches[i].number = static_cast<std::uint16_t>(i + 1);
+    header_ = std::move(header);
+}
+
+std::shared_ptr<const StreamHeader> RecentSlots::header() const {
+    const std::lock_guard lock(mutex_);
+    return header_;
 }
 
 void RecentSlots::end() {
@@ -108,11 +111,13 @@ const RecentSlots::Slot* RecentSlots::find(std::int64_t slot) const {
     return &slots_[static_cast<std::size_t>(slot - extent_.first)];
 }
 
-void RecentSlots::visit(std::int64_t first, std::int64_t end,
-                        const std::function<void(const SamplePacket&)>& take) const {
+std::shared_ptr<const StreamHeader> RecentSlots::visit(
+    std::int64_t first, std::int64_t end,
+    const std::function<void(const SamplePacket&)>& take) const {
     const std::lock_guard lock(mutex_);
     for (std::int64_t at = std::max(first, extent_.first); at < std::min(end, extent_.slots); ++at)
         for (const SamplePacket& packet : find(at)->packets) take(packet);
+    return header_;
 }
 
 std::vector<std::uint8_t> RecentSlots::payload(std::int64_t slot, std::size_t first,
@@ -129,7 +134,7 @@ std::vector<std::uint16_t> RecentSlots::codes(std::int64_t slot) {
     const auto frame = payload(slot, 0, layout_.payload_bytes());
     if (frame.empty()) return {};
     const std::lock_guard lock(light_mutex_);
-    return codes_of(frame, decoded_shape(header_).planes, to_light_);
+    return codes_of(frame, planes_, to_light_);
 }
 
 std::optional<std::uint16_t> RecentSlots::code(std::int64_t slot, int plane, int row, int col) {
@@ -138,7 +143,7 @@ std::optional<std::uint16_t> RecentSlots::code(std::int64_t slot, int plane, int
                                index(cell_rows_) * layout_.stride_bytes);
     if (cells.empty()) return {};
     const std::lock_guard lock(light_mutex_);
-    const auto codes = codes_of(cells, decoded_shape(header_).planes, cells_to_light_);
+    const auto codes = codes_of(cells, planes_, cells_to_light_);
     const FrameShape shape = cells_to_light_.shape();
     return codes[index(plane) * shape.pixels() + row_major(row - first_row, col, shape.cols)];
 }

@@ -3,6 +3,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <deque>
+#include <memory>
 #include <mutex>
 #include <optional>
 #include <span>
@@ -23,14 +24,18 @@ class RecentSlots {
     /// The next slot. Copies both. Without payload it has the frame of the slot before.
     void add(std::span<const std::uint8_t> payload, std::span<const SamplePacket> packets,
              std::int64_t arrival_ns);
+    /// From the next slot on the sensor has another schedule, from next.slot on.
+    void add(ScheduleSwitch next);
     /// No more slots come.
     void end();
 
-    [[nodiscard]] const StreamHeader& header() const { return header_; }
+    /// As PacketSource::header. It lacks switches before the slots that are there.
+    [[nodiscard]] std::shared_ptr<const StreamHeader> header() const;
     [[nodiscard]] SlotExtent extent() const;
     [[nodiscard]] StreamReport report() const;
-    void visit(std::int64_t first, std::int64_t end,
-               const std::function<void(const SamplePacket&)>& take) const;
+    std::shared_ptr<const StreamHeader> visit(
+        std::int64_t first, std::int64_t end,
+        const std::function<void(const SamplePacket&)>& take) const;
     /// light_code of a frame, order (plane, row, col) of decoded_shape; empty if it is not there.
     /// Each pixel of a mosaic has the colours of its cell of 2 x 2 pixels.
     [[nodiscard]] std::vector<std::uint16_t> codes(std::int64_t slot);
@@ -51,8 +56,9 @@ class RecentSlots {
     /// Null if it is not there. Precondition: the lock is held.
     [[nodiscard]] const Slot* find(std::int64_t slot) const;
 
-    StreamHeader header_;
+    std::shared_ptr<const StreamHeader> header_;
     FrameLayout layout_;
+    int planes_;     ///< of a picture
     int cell_rows_;  ///< that determine the colours of a pixel
     std::mutex light_mutex_;
     FrameLight to_light_;
@@ -69,12 +75,15 @@ class RecentPackets : public PacketSource {
   public:
     explicit RecentPackets(const RecentSlots& recent) : recent_(recent) {}
 
-    [[nodiscard]] const StreamHeader& header() const override { return recent_.header(); }
+    [[nodiscard]] std::shared_ptr<const StreamHeader> header() const override {
+        return recent_.header();
+    }
     [[nodiscard]] StreamReport report() const override { return recent_.report(); }
     [[nodiscard]] SlotExtent extent() override { return recent_.extent(); }
-    void visit(std::int64_t first, std::int64_t end,
-               const std::function<void(const SamplePacket&)>& take) override {
-        recent_.visit(first, end, take);
+    std::shared_ptr<const StreamHeader> visit(
+        std::int64_t first, std::int64_t end,
+        const std::function<void(const SamplePacket&)>& take) override {
+        return recent_.visit(first, end, take);
     }
 
   private:

@@ -36,10 +36,6 @@ void yield_to_others() {
     static_cast<void>(setpriority(PRIO_PROCESS, static_cast<id_t>(gettid()), kNice));
 }
 
-PreviewDecoder whole_frames(const StreamHeader& header, DecodeMethod method) {
-    return {header, {.method = method, .size = decoded_shape(header)}};
-}
-
 }  // namespace
 
 SlotDecoder::SlotDecoder(ViewedStream& stream, const std::filesystem::path& file,
@@ -47,23 +43,18 @@ SlotDecoder::SlotDecoder(ViewedStream& stream, const std::filesystem::path& file
     : stream_(stream),
       method_(setup.options.method),
       options_(setup.options),
-      live_(whole_frames(stream.header(), DecodeMethod::kLive)),
-      fast_(whole_frames(stream.header(), DecodeMethod::kFast)),
       session_(std::in_place, file, setup, calibration) {
     options_.fill_gaps = true;
     start();
     threads_[2] = std::thread([this] { run(Level::kBlock); });
 }
 
-SlotDecoder::SlotDecoder(ViewedStream& stream)
-    : stream_(stream),
-      method_(DecodeMethod::kFast),
-      live_(whole_frames(stream.header(), DecodeMethod::kLive)),
-      fast_(whole_frames(stream.header(), DecodeMethod::kFast)) {
+SlotDecoder::SlotDecoder(ViewedStream& stream) : stream_(stream), method_(DecodeMethod::kFast) {
     start();
 }
 
 void SlotDecoder::start() {
+    for (const Level level : {Level::kLive, Level::kFast}) decoder_of(level, stream_.header());
     threads_[0] = std::thread([this] { run(Level::kLive); });
     threads_[1] = std::thread([this] { run(Level::kFast); });
 }
@@ -85,7 +76,7 @@ std::string_view SlotDecoder::name_of(Level level) const {
         case Level::kNone:
             return "";
         case Level::kLive:
-            return named(live_.method()).name;
+            return named(live_method_).name;
         case Level::kFast:
             return named(DecodeMethod::kFast).name;
         case Level::kBlock:
@@ -216,12 +207,29 @@ void SlotDecoder::work(const Task& task) {
         decode_slot(task);
 }
 
+PreviewDecoder& SlotDecoder::decoder_of(Level level,
+                                        const std::shared_ptr<const StreamHeader>& header) {
+    auto& [used, decoder] = decodings_[index_of(level) - 1];
+    if (used == header) return *decoder;
+    const auto method = level == Level::kLive ? DecodeMethod::kLive : DecodeMethod::kFast;
+    used = header;
+    decoder.emplace(*header, PreviewOptions{.method = method, .size = decoded_shape(*header)});
+    if (level == Level::kLive) live_method_ = decoder->method();
+    return *decoder;
+}
+
 void SlotDecoder::decode_slot(const Task& task) {
-    PreviewDecoder& decoder = task.level == Level::kLive ? live_ : fast_;
-    const PreviewSlots slots = decoder.around(task.slot, stream_.slots());
-    const auto packets = stream_.packets(slots.range.begin, slots.range.end);
-    const auto frame = decoder.decode(slots, packets, [&](double) { return goes_on(task); });
-    if (frame) store(task.slot, task.level, frame->light);
+    for (;;) {
+        const auto header = stream_.header();
+        PreviewDecoder& decoder = decoder_of(task.level, header);
+        const PreviewSlots slots = decoder.around(task.slot, stream_.slots());
+        const auto found = stream_.packets(slots.range.begin, slots.range.end);
+        if (found.header != header) continue;  // the schedule has changed meanwhile
+        const auto frame =
+            decoder.decode(slots, found.packets, [&](double) { return goes_on(task); });
+        if (frame) store(task.slot, task.level, frame->light);
+        return;
+    }
 }
 
 void SlotDecoder::decode_block_of(std::int64_t slot) {

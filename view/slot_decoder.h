@@ -74,6 +74,13 @@ class SlotDecoder {
     /// Learns how far the stream has grown, and forgets the pictures that lacked what came.
     void look_for_more();
     [[nodiscard]] bool whole_block(std::int64_t slot) const;
+    /// What decodes single slots by a level, for its thread.
+    struct Decoding {
+        std::shared_ptr<const StreamHeader> header;  ///< that decoder uses
+        std::optional<PreviewDecoder> decoder;
+    };
+    /// The one for a header: a new one after each switch of the schedule.
+    PreviewDecoder& decoder_of(Level level, const std::shared_ptr<const StreamHeader>& header);
     /// Decodes the tasks of a level.
     void run(Level level);
     void work(const Task& task);
@@ -92,8 +99,8 @@ class SlotDecoder {
     ViewedStream& stream_;
     DecodeMethod method_;
     DecodeOptions options_;
-    PreviewDecoder live_;
-    PreviewDecoder fast_;
+    std::array<Decoding, 2> decodings_;  ///< kLive, kFast
+    std::atomic<DecodeMethod> live_method_;
     std::optional<DecodeSession> session_;  ///< of the blocks
 
     mutable std::mutex mutex_;

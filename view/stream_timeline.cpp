@@ -21,8 +21,10 @@ constexpr std::chrono::milliseconds kWait{200};
 
 }  // namespace
 
-StreamTimeline::StreamTimeline(const std::filesystem::path& file)
-    : reader_(file), thread_([this] { run_on_this_thread([this] { run(); }); }) {}
+StreamTimeline::StreamTimeline(const std::filesystem::path& file) : reader_(file) {
+    reader_.follow_switches();
+    thread_ = std::thread([this] { run_on_this_thread([this] { run(); }); });
+}
 
 StreamTimeline::~StreamTimeline() {
     ended_ = true;

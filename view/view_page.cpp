@@ -9,6 +9,7 @@
 #include <nlohmann/json.hpp>
 #include <utility>
 
+#include "core/config.h"
 #include "core/error.h"
 #include "core/index.h"
 #include "core/text.h"
@@ -88,7 +89,7 @@ void ViewPage::add_stream(const std::filesystem::path& file, const ViewOptions& 
     }
     ViewedStream& stream = streams_.emplace_back(std::make_unique<FilePackets>(std::move(reader)),
                                                  file.stem().string());
-    require_shape(decoded_shape(stream.header()), file);
+    require_shape(decoded_shape(*stream.header()), file);
     timelines_.emplace_back(file);
     SlotDecoder& decoder =
         decoders_.emplace_back(stream, file, options.decoding, options.calibration);
@@ -99,7 +100,7 @@ void ViewPage::add_stream(const std::filesystem::path& file, const ViewOptions& 
 void ViewPage::add_camera(CameraView& camera) {
     RecentSlots& recent = camera.recent();
     title_ = camera.name();
-    shape_ = decoded_shape(recent.header());
+    shape_ = decoded_shape(*recent.header());
     videos_.push_back({"camera",
                        camera.address(),
                        {},
@@ -161,6 +162,7 @@ ordered_json ViewPage::data() {
                       {"running_camera", camera_ == nullptr ? ordered_json(nullptr)
                                                             : ordered_json(camera_->address())}};
     json.update(pictures_json(shape_, {.rows = shape_.rows, .cols = shape_.cols}));
+    if (camera_ != nullptr) json["schedules"] = config_names(ConfigKind::kSchedules);
     json["videos"] = ordered_json::array();
     for (const Video& video : videos_)
         json["videos"].push_back({{"name", video.name},
@@ -301,7 +303,15 @@ PageAnswer ViewPage::status(const PageRequest& request) {
         std::this_thread::sleep_for(std::chrono::milliseconds(5));
         now = extent();
     }
-    return json_answer({{"slots", now.slots}, {"first", now.first}, {"complete", now.complete}});
+    ordered_json switched = ordered_json::array();
+    for (ViewedStream& stream : streams_) {
+        const auto header = stream.header();
+        switched.push_back(header->switches.empty() ? 0 : header->switches.back().slot);
+    }
+    return json_answer({{"slots", now.slots},
+                        {"first", now.first},
+                        {"complete", now.complete},
+                        {"switched", switched}});
 }
 
 std::optional<PageAnswer> ViewPage::ask_camera(const std::string& what) {
@@ -316,6 +326,8 @@ std::optional<PageAnswer> ViewPage::act(const PageRequest& request) {
         camera_->record();
     else if (request.path == "camera/stop")
         camera_->stop_recording();
+    else if (request.path == "camera/sensor")
+        camera_->change_sensor(request.text("changes"));
     else
         return {};
     return json_answer(camera_->status());
@@ -328,13 +340,15 @@ std::optional<PageAnswer> ViewPage::answer(const PageRequest& request) {
     if (request.path.starts_with(kPlane)) return plane(request.path.substr(kPlane.size()), request);
     if (request.path == "samples") return samples(request);
     if (request.path == "light") return light(request);
+    if (request.path == "run")
+        if (const auto run = run_of(request)) return json_answer(streams_[*run].json());
     if (request.path == "timeline" && camera_ == nullptr)
         if (const auto run = run_of(request)) return json_answer(timelines_[*run].json());
     if (request.path == "readout") {
         const auto run = run_of(request);
         const auto slot = request.number("slot").value_or(-1);
         if (!run || slot < 0 || slot >= slots()) return {};
-        return json_answer(readout_lanes_json(streams_[*run].header(), slot));
+        return json_answer(readout_lanes_json(*streams_[*run].header(), slot));
     }
     if (request.path == "status") return status(request);
     if (camera_ != nullptr) return ask_camera(request.path);

@@ -46,7 +46,9 @@ class ViewPage {
     /// Answers what page/served.js asks for:
     /// - "": the page;
     /// - "status" ("than", "wait"): JSON, the `slots` so far, the `first` that is not forgotten,
-    ///   and whether the streams are `complete`; waits `wait` ms for more slots than `than`;
+    ///   `switched`, the slot of the last switch of each run, 0 without one, and whether the
+    ///   streams are `complete`; waits `wait` ms for more slots than `than`;
+    /// - "run" ("run"): JSON, ViewedStream::json;
     /// - "plane/v0-12", ("viewer", "than", "wait"): light_code of slot 12 of video 0, 16 bits each,
     ///   little-endian; of a decoded one better than level `than`, for which it waits `wait` ms, or
     ///   no bytes;
@@ -56,7 +58,7 @@ class ViewPage {
     /// - "timeline" ("run"): JSON, StreamTimeline::json;
     /// - "readout" ("run", "slot"): JSON, readout_lanes_json;
     /// - "camera", "camera/features": JSON, CameraView::status and features; the acts
-    ///   "camera/record" and "camera/stop";
+    ///   "camera/record", "camera/stop" and "camera/sensor" ("changes", of change_sensor);
     /// - "light" ("video", "row", "col", "plane", "first", "end"): JSON, [slot, code] where known.
     /// \throws InputError if a picture cannot be made.
     [[nodiscard]] std::optional<PageAnswer> answer(const PageRequest& request);

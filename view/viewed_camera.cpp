@@ -10,7 +10,7 @@
 #include "capture/recording/frame_recording.h"
 #include "core/error.h"
 #include "core/message.h"
-#include "readout/emulator.h"
+#include "stream/schedule_switch.h"
 #include "study/report/json_figures.h"
 
 namespace stipple {
@@ -65,6 +65,7 @@ ViewedCamera::ViewedCamera(ViewedCameraOptions options)
     receiver_ = std::jthread([this](const std::stop_token& stop) { receive(stop); });
     const FrameLight light(layout_, options_.black_level_dn);
     setup_ = set_up_sensor(options_.sensor, light.shape(), light.filter());
+    sensor_ = std::make_unique<ViewedSensor>(options_.sensor, *setup_, light.filter());
     recent_ = std::make_unique<RecentSlots>(layout_, options_.black_level_dn,
                                             stream_header_of(*setup_, {}));
     ready_ = true;
@@ -172,10 +173,31 @@ void ViewedCamera::emulate() {
     std::vector<float> light(to_light.shape().sites());
     while (auto frame = frames_.pop()) {
         to_light.convert(frame->payload, light);
+        sensor_->apply(emulator.stats().slots,
+                       [&](const SensorSetup& next) { return switch_to(emulator, next); });
         recent_->add(frame->payload, emulator.expose(light), frame->record.host_monotonic_ns);
         session_.give_back(std::move(frame->payload));
     }
+    sensor_->end();
     recent_->end();
+}
+
+std::int64_t ViewedCamera::switch_to(Emulator& emulator, const SensorSetup& next) {
+    const std::int64_t slot = emulator.stats().slots;
+    check_switch(*setup_, next, slot);
+    const auto header = recent_->header();
+    ScheduleSwitch made = switch_of(next);
+    made.slot = slot;
+    made.number = static_cast<std::uint16_t>(last_switch(*header) + 1);
+    if (const auto fault = JoinedExposures().fault(*header, made))
+        throw InputError(setup_->schedule.name, *fault);
+    emulator.switch_to(next);
+    recent_->add(std::move(made));
+    return slot;
+}
+
+void ViewedCamera::change_sensor(const std::string& changes) {
+    sensor_->change(changes, events_);
 }
 
 void ViewedCamera::record() {
@@ -258,6 +280,7 @@ ordered_json ViewedCamera::status() const {
             {"outages", totals_.outages},
             {"skipped", skipped_},
             {"recording", recording},
+            {"sensor", sensor_->json()},
             {"events", events_.json()},
             {"ended", ended_.empty() ? ordered_json(nullptr) : ordered_json(ended_)}};
 }

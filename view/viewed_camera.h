@@ -17,6 +17,7 @@
 #include "capture/capture_session.h"
 #include "capture/frame_queue.h"
 #include "capture/frame_sequence.h"
+#include "readout/emulator.h"
 #include "readout/sensor_file.h"
 #include "view/camera_view.h"
 
@@ -59,6 +60,9 @@ class ViewedCamera : public CameraView {
     /// and RecordingWriter.
     void record() override;
     void stop_recording() override;
+    void change_sensor(const std::string& changes) override;
+    /// As it was changed.
+    [[nodiscard]] SensorChoice sensor() const { return sensor_->choice(); }
     /// With what `set` has changed.
     [[nodiscard]] CameraSettings settings() const;
     [[nodiscard]] bool records() const;
@@ -76,6 +80,8 @@ class ViewedCamera : public CameraView {
     void take(SessionEvent event);
     void take(CapturedFrame frame);
     void emulate();
+    /// Returns the first slot after the switch.
+    std::int64_t switch_to(Emulator& emulator, const SensorSetup& next);
     void end_recording();
 
     ViewedCameraOptions options_;
@@ -85,6 +91,7 @@ class ViewedCamera : public CameraView {
     CameraDescription description_;
     FrameLayout layout_;
     std::optional<SensorSetup> setup_;
+    std::unique_ptr<ViewedSensor> sensor_;
     std::unique_ptr<RecentSlots> recent_;
     FrameQueue frames_;  ///< for the emulation
     CameraEvents events_;

@@ -7,6 +7,7 @@
 #include "core/error.h"
 #include "core/index.h"
 #include "core/parallel.h"
+#include "stream/schedule_switch.h"
 #include "study/report/stream_text.h"
 
 namespace stipple {
@@ -34,14 +35,16 @@ bool is_due(const ExposureSchedule& schedule, int row, int col, std::int64_t slo
 ViewedStream::ViewedStream(std::unique_ptr<PacketSource> source, std::string name)
     : source_(std::move(source)),
       name_(std::move(name)),
-      samples_(source_->header(), whole(source_->header().shape)) {
-    if (header().schedule.weighted())
+      header_(source_->header()),
+      samples_(*header_, whole(header_->shape)) {
+    if (header_->schedule.weighted())
         throw InputError(name_, "a page shows no grey masks; \"stipple decode\" takes this stream");
-    if (header().may_switch)
-        throw InputError(name_,
-                         "may change its schedule, of which a page shows one; \"stipple decode\" "
-                         "takes this stream");
     samples_.add_kinds();
+}
+
+std::shared_ptr<const StreamHeader> ViewedStream::header() const {
+    const std::lock_guard lock(mutex_);
+    return source_->header();
 }
 
 SlotExtent ViewedStream::extent() {
@@ -53,16 +56,27 @@ SlotExtent ViewedStream::extent() {
 ordered_json ViewedStream::json() {
     const std::int64_t known = slots();
     const std::lock_guard lock(mutex_);
-    ordered_json json = run_json(name_, header(), source_->report(), known);
+    use(source_->header());
+    ordered_json json = run_json(name_, *header_, source_->report(), known);
     json["samples"] = samples_.json();
     json["loads"] = nullptr;
     return json;
 }
 
+void ViewedStream::use(std::shared_ptr<const StreamHeader> header) {
+    if (header == header_) return;
+    header_ = std::move(header);
+    samples_.use(*header_);
+    samples_.add_kinds();
+}
+
 ViewedStream::Samples ViewedStream::read_samples(std::int64_t slot) {
     if (slot != held_slot_) {
         samples_.clear();
-        source_->visit(slot, slot + 1, [&](const SamplePacket& packet) { samples_.add(packet); });
+        std::vector<SamplePacket> packets;
+        use(source_->visit(slot, slot + 1,
+                           [&](const SamplePacket& packet) { packets.push_back(packet); }));
+        for (const SamplePacket& packet : packets) samples_.add(packet);
         held_slot_ = extent_.complete ? slot : -1;  // else the rest of it may come
     }
     return {{samples_.kinds().begin(), samples_.kinds().end()},
@@ -75,8 +89,9 @@ ViewedStream::Samples ViewedStream::samples(std::int64_t slot) {
 }
 
 std::vector<std::uint16_t> ViewedStream::exposure_map(std::int64_t slot) const {
-    const StreamHeader& header = source_->header();
-    const ExposureSchedule& schedule = header.schedule;
+    const auto shared = header();
+    const StreamHeader& header = *shared;
+    const ExposureSchedule& schedule = *schedule_at(header, slot).schedule;
     const int period = schedule.period_slots();
     const auto phase = static_cast<int>(slot % period);
     std::vector<std::uint16_t> map(header.shape.pixels());
@@ -96,11 +111,12 @@ std::vector<std::uint16_t> ViewedStream::exposure_map(std::int64_t slot) const {
 ordered_json ViewedStream::samples_of_pixel(int row, int col, std::int64_t first,
                                             std::int64_t end) {
     const std::lock_guard lock(mutex_);
-    const FrameShape shape = header().shape;
+    const auto header = source_->header();
+    const FrameShape shape = header->shape;
     const std::size_t pixel = row_major(row, col, shape.cols);
     ordered_json list = ordered_json::array();
     for (std::int64_t slot = first; slot < end; ++slot) {
-        if (!is_due(header().schedule, row, col, slot)) continue;
+        if (!is_due(*schedule_at(*header, slot).schedule, row, col, slot)) continue;
         const Samples at = read_samples(slot);
         if (at.kinds[pixel] == 0) continue;
         const auto before = static_cast<std::size_t>(
@@ -114,10 +130,11 @@ ordered_json ViewedStream::samples_of_pixel(int row, int col, std::int64_t first
     return list;
 }
 
-std::vector<SamplePacket> ViewedStream::packets(std::int64_t first, std::int64_t end) {
+ViewedStream::Packets ViewedStream::packets(std::int64_t first, std::int64_t end) {
     const std::lock_guard lock(mutex_);
-    std::vector<SamplePacket> found;
-    source_->visit(first, end, [&](const SamplePacket& packet) { found.push_back(packet); });
+    Packets found;
+    found.header = source_->visit(
+        first, end, [&](const SamplePacket& packet) { found.packets.push_back(packet); });
     return found;
 }
 

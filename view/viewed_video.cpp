@@ -3,9 +3,9 @@
 #include <algorithm>
 #include <utility>
 
-#include "core/error.h"
 #include "core/index.h"
 #include "study/report/report_page.h"
+#include "view/mosaic_picture.h"
 
 namespace stipple {
 
@@ -18,11 +18,9 @@ ViewedVideo::ViewedVideo(std::filesystem::path source, FootageOptions options,
       warn_(std::move(warn)) {
     open();
     warn_ = [](const Message&) {};  // once is enough
-    if (reader_->filter() != ColourFilter::kNone)
-        throw InputError(source_.string(),
-                         "is a mosaic of colours, which a page does not show; \"stipple emulate\" "
-                         "takes it");
     shape_ = reader_->shape();
+    filter_ = reader_->filter();
+    if (filter_ != ColourFilter::kNone) shape_.planes = 3;
     if (const auto declared = reader_->slots()) {
         slots_ = *declared;
     } else {
@@ -43,7 +41,8 @@ std::vector<std::uint16_t> ViewedVideo::codes(std::int64_t slot) {
     if (slot > next_) reader_->skip(static_cast<int>(slot - next_));
     const auto frame = reader_->next();
     next_ = slot + 1;
-    return light_codes(frame);
+    if (filter_ == ColourFilter::kNone) return light_codes(frame);
+    return light_codes(coloured(frame, reader_->shape(), filter_));
 }
 
 std::optional<std::uint16_t> ViewedVideo::code(std::int64_t slot, int plane, int row, int col) {

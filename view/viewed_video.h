@@ -17,8 +17,7 @@ namespace stipple {
 /// threads.
 class ViewedVideo {
   public:
-    /// \throws InputError as ReadAhead; if the frames are a mosaic of colours, which a page does
-    /// not show.
+    /// \throws InputError as ReadAhead.
     ViewedVideo(std::filesystem::path source, FootageOptions options,
                 std::function<void(const Message&)> warn);
 
@@ -42,7 +41,8 @@ class ViewedVideo {
     std::mutex mutex_;
     std::unique_ptr<ReadAhead> reader_;
     std::int64_t next_ = 0;  ///< the frame that the reader gives next
-    FrameShape shape_;
+    FrameShape shape_;       ///< of a picture; a mosaic has three planes
+    ColourFilter filter_ = ColourFilter::kNone;
     std::int64_t slots_ = 0;
 };
 

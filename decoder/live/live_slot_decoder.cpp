@@ -82,8 +82,9 @@ LiveSlotDecoder::Frame LiveSlotDecoder::decode(const StreamHeader& header,
                                                int slot) {
     assert(live.begin == 0 && live.end == window.slots && live.slots() <= LiveWindow::kMaxSlots);
     const FrameShape shape = window.shape;
-    const WindowDecoder::Wanted wanted{WindowSlots{slot, slot + 1},
-                                       header.schedule.longest_span_slots()};
+    const WindowDecoder::Wanted wanted{
+        WindowSlots{slot, slot + 1},
+        header.switches.empty() ? header.schedule.longest_span_slots() : LiveWindow::kMaxSlots};
     Frame frame;
     frame.light = FluxVideo(1, shape);
     frame.known.resize(shape.sites());

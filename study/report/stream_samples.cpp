@@ -13,6 +13,7 @@
 #include "core/error.h"
 #include "core/exposure_schedule.h"
 #include "decoder/pixel_response.h"
+#include "stream/schedule_switch.h"
 #include "study/report/report_page.h"
 #include "study/report/schedule_text.h"
 
@@ -54,8 +55,9 @@ ordered_json response_json(const PixelResponse& response, int bit_depth, int lig
 }
 
 SlotSamples::SlotSamples(const StreamHeader& header, const PixelArea& area)
-    : header_(header),
+    : header_(&header),
       area_(area),
+      parts_(schedule_parts(header)),
       kinds_(static_cast<std::size_t>(area.rows) * static_cast<std::size_t>(area.cols)) {
     constexpr std::size_t kMaxPixels = 4096;
     if (header.calibration.tile.pixels.size() > kMaxPixels)
@@ -64,20 +66,37 @@ SlotSamples::SlotSamples(const StreamHeader& header, const PixelArea& area)
                                      header.calibration.tile.pixels.size(), kMaxPixels));
 }
 
-std::uint64_t SlotSamples::exposure_at(std::int64_t last_slot, int row, int col,
-                                       int span_slots) const {
-    const ExposureSchedule& schedule = header_.schedule;
-    const int tile_row = row % schedule.tile_rows(), tile_col = col % schedule.tile_cols();
-    const std::size_t i =
-        exposure_starting_at(schedule, tile_row, tile_col, last_slot - span_slots + 1);
-    return schedule.exposures(tile_row, tile_col)[i].open_slots;
+void SlotSamples::use(const StreamHeader& header) {
+    header_ = &header;
+    parts_ = schedule_parts(header);
 }
 
-std::uint16_t SlotSamples::kind_of(std::uint64_t open_slots) {
-    const auto next = static_cast<std::uint16_t>(open_slots_.size());
-    const auto [kind, is_new] = known_.try_emplace(open_slots, next);
-    if (is_new) open_slots_.push_back(open_slots);
-    if (open_slots_.size() == std::numeric_limits<std::uint16_t>::max())
+std::optional<std::uint64_t> SlotSamples::exposure_at(std::size_t part, const PixelSlot& at,
+                                                      int span_slots) const {
+    const auto& [schedule, first_slot, follows] = parts_[part];
+    if (part > 0 && at.slot < first_slot + schedule->period_slots()) {
+        const auto read = read_exposure(parts_, at);
+        return read ? std::optional(read->open_slots) : std::nullopt;
+    }
+    const int tile_row = at.row % schedule->tile_rows(), tile_col = at.col % schedule->tile_cols();
+    const std::size_t i =
+        exposure_starting_at(*schedule, tile_row, tile_col, at.slot - span_slots + 1);
+    return schedule->exposures(tile_row, tile_col)[i].open_slots;
+}
+
+std::size_t SlotSamples::readout_of(const SchedulePart& part) {
+    const ReadoutValues values = readout_values(calibration_at(*header_, part.first_slot));
+    const auto known = std::ranges::find(readouts_, values, &Readout::values);
+    if (known == readouts_.end()) readouts_.push_back({values, {}});
+    return static_cast<std::size_t>(std::ranges::find(readouts_, values, &Readout::values) -
+                                    readouts_.begin());
+}
+
+std::uint16_t SlotSamples::kind_of(std::uint64_t open_slots, std::size_t readout) {
+    const auto next = static_cast<std::uint16_t>(all_kinds_.size());
+    const auto [kind, is_new] = readouts_[readout].kinds.try_emplace(open_slots, next);
+    if (is_new) all_kinds_.push_back({open_slots, readout});
+    if (all_kinds_.size() == std::numeric_limits<std::uint16_t>::max())
         throw InputError(
             "exposure schedule",
             "has too many kinds of exposures for a report; show a part with " + Parameter{"crop"});
@@ -85,32 +104,42 @@ std::uint16_t SlotSamples::kind_of(std::uint64_t open_slots) {
 }
 
 void SlotSamples::add_kinds() {
-    const ExposureSchedule& schedule = header_.schedule;
-    for (int row = 0; row < std::min(schedule.tile_rows(), header_.shape.rows); ++row)
-        for (int col = 0; col < std::min(schedule.tile_cols(), header_.shape.cols); ++col)
-            for (const Exposure& exposure : schedule.exposures(row, col))
-                (void)kind_of(exposure.open_slots);
+    for (const SchedulePart& part : parts_) {
+        const std::size_t readout = readout_of(part);
+        const ExposureSchedule& schedule = *part.schedule;
+        for (int row = 0; row < std::min(schedule.tile_rows(), header_->shape.rows); ++row)
+            for (int col = 0; col < std::min(schedule.tile_cols(), header_->shape.cols); ++col)
+                for (const Exposure& exposure : schedule.exposures(row, col))
+                    (void)kind_of(exposure.open_slots, readout);
+    }
 }
 
-void SlotSamples::add_row(const SamplePacket& packet, int row, const std::uint16_t*& dn) {
+void SlotSamples::add_row(const SamplePacket& packet, std::size_t part, int row,
+                          const std::uint16_t*& dn) {
     const bool shown = row >= area_.first_row && row < area_.first_row + area_.rows;
+    const int planes = header_->shape.planes;
+    const std::size_t readout = readout_of(parts_[part]);
     for_each_readout(
-        header_.schedule, packet.slot, row, header_.shape.cols, [&](int col, int span_slots) {
+        *parts_[part].schedule, readout_slot(parts_[part], packet.slot), row, header_->shape.cols,
+        [&](int col, int span_slots) {
             if (shown && col >= area_.first_col && col < area_.first_col + area_.cols) {
                 const int pixel = (row - area_.first_row) * area_.cols + col - area_.first_col;
-                const auto kind = kind_of(exposure_at(packet.slot, row, col, span_slots));
-                kinds_[static_cast<std::size_t>(pixel)] = static_cast<std::uint16_t>(1 + kind);
-                dn_.insert(dn_.end(), dn, dn + header_.shape.planes);
+                if (const auto read = exposure_at(part, {packet.slot, row, col}, span_slots)) {
+                    kinds_[static_cast<std::size_t>(pixel)] =
+                        static_cast<std::uint16_t>(1 + kind_of(*read, readout));
+                    dn_.insert(dn_.end(), dn, dn + planes);
+                }
             }
-            dn += header_.shape.planes;
+            dn += planes;
         });
 }
 
 void SlotSamples::add(const SamplePacket& packet) {
     if (packet.dn.empty()) return;
+    const std::size_t part = part_at(parts_, packet.slot);
     const std::uint16_t* dn = packet.dn.data();
     for (int row = packet.first_row; row < packet.first_row + packet.rows; ++row)
-        add_row(packet, row, dn);
+        add_row(packet, part, row, dn);
 }
 
 void SlotSamples::clear() {
@@ -134,25 +163,32 @@ void StreamSamples::finish() {
 }
 
 ordered_json SlotSamples::json() const {
-    const CalibrationTile& tile = header_.calibration.tile;
+    const CalibrationTile& tile = header_->calibration.tile;
     const int rows = tile.pixels.empty() ? 1 : tile.rows;
     const int cols = tile.pixels.empty() ? 1 : tile.cols;
     ordered_json exposures = ordered_json::array(), responses = ordered_json::array();
-    for (const std::uint64_t open_slots : open_slots_)
+    std::set<int> lengths;
+    for (const auto& [open_slots, readout] : all_kinds_) {
         exposures.push_back({{"span_slots", std::bit_width(open_slots)},
                              {"light_slots", std::popcount(open_slots)},
-                             {"open", open_runs_json(open_slots)}});
-    std::set<int> lengths;
-    for (const std::uint64_t open_slots : open_slots_) lengths.insert(std::popcount(open_slots));
-    const PixelResponses all(header_.calibration);
-    for (int row = 0; row < rows; ++row)
-        for (int col = 0; col < cols; ++col) {
-            auto of_pixel = ordered_json::object();
-            for (const int length : lengths)
-                of_pixel[std::to_string(length)] =
-                    response_json(all.at(row, col), header_.calibration.bit_depth, length);
-            responses.push_back(of_pixel);
-        }
+                             {"open", open_runs_json(open_slots)},
+                             {"readout", readout}});
+        lengths.insert(std::popcount(open_slots));
+    }
+    for (const Readout& readout : readouts_) {
+        const Calibration calibration = with_values(header_->calibration, readout.values);
+        const PixelResponses all(calibration);
+        ordered_json of_pixels = ordered_json::array();
+        for (int row = 0; row < rows; ++row)
+            for (int col = 0; col < cols; ++col) {
+                auto of_pixel = ordered_json::object();
+                for (const int length : lengths)
+                    of_pixel[std::to_string(length)] =
+                        response_json(all.at(row, col), calibration.bit_depth, length);
+                of_pixels.push_back(of_pixel);
+            }
+        responses.push_back(of_pixels);
+    }
     return {{"exposures", exposures},
             {"response_rows", rows},
             {"response_cols", cols},

@@ -3,10 +3,12 @@
 #include <cstddef>
 #include <cstdint>
 #include <nlohmann/json.hpp>
+#include <optional>
 #include <span>
 #include <unordered_map>
 #include <vector>
 
+#include "core/schedule_parts.h"
 #include "decoder/pixel_response.h"
 #include "stream/sample_packet.h"
 #include "stream/stream_header.h"
@@ -56,33 +58,49 @@ class SlotSamples {
     /// pixels.
     SlotSamples(const StreamHeader& header, const PixelArea& area);
 
+    /// The header of the same stream with more switches of the schedule, which must outlive this.
+    void use(const StreamHeader& header);
+
     /// The packets of a slot come by row. \throws InputError if there are more kinds of exposures
     /// than 16 bits can tell apart.
     void add(const SamplePacket& packet);
     /// For another slot.
     void clear();
-    /// Makes all kinds of exposures of the schedule known. \throws InputError as `add`.
+    /// Makes all kinds of exposures of the schedules known, but for those across a switch. \throws
+    /// InputError as `add`.
     void add_kinds();
 
     /// For each pixel 0, or 1 + the kind of the exposure that is read at the end of the slot.
     [[nodiscard]] std::span<const std::uint16_t> kinds() const { return kinds_; }
     /// The DN of the pixels that are read, pixel by pixel and plane by plane.
     [[nodiscard]] std::span<const std::uint16_t> dn() const { return dn_; }
-    /// `exposures`: the kinds of exposures so far, each `span_slots`, `light_slots` and `open`, the
-    /// runs of open slots as [first, slots]; `response_rows`, `response_cols` and `responses`: for
-    /// each pixel of the calibration tile `response_json` by light slots.
+    /// `exposures`: the kinds of exposures so far, each `span_slots`, `light_slots`, `open`, the
+    /// runs of open slots as [first, slots], and `readout`, which of the `responses` it has;
+    /// `response_rows`, `response_cols` and `responses`: for each readout, which a switch may
+    /// change, and each pixel of the calibration tile `response_json` by light slots.
     [[nodiscard]] nlohmann::ordered_json json() const;
 
   private:
-    void add_row(const SamplePacket& packet, int row, const std::uint16_t*& dn);
-    [[nodiscard]] std::uint16_t kind_of(std::uint64_t open_slots);
-    [[nodiscard]] std::uint64_t exposure_at(std::int64_t last_slot, int row, int col,
-                                            int span_slots) const;
+    struct Kind {
+        std::uint64_t open_slots;
+        std::size_t readout;
+    };
+    struct Readout {
+        ReadoutValues values;
+        std::unordered_map<std::uint64_t, std::uint16_t> kinds;  ///< by open slots
+    };
+    void add_row(const SamplePacket& packet, std::size_t part, int row, const std::uint16_t*& dn);
+    [[nodiscard]] std::uint16_t kind_of(std::uint64_t open_slots, std::size_t readout);
+    /// Open slots of what is read at the end of a slot; nothing if it began in an unknown part.
+    [[nodiscard]] std::optional<std::uint64_t> exposure_at(std::size_t part, const PixelSlot& at,
+                                                           int span_slots) const;
+    [[nodiscard]] std::size_t readout_of(const SchedulePart& part);
 
-    const StreamHeader& header_;
+    const StreamHeader* header_;
     PixelArea area_;
-    std::vector<std::uint64_t> open_slots_;  ///< by kind
-    std::unordered_map<std::uint64_t, std::uint16_t> known_;
+    std::vector<SchedulePart> parts_;
+    std::vector<Kind> all_kinds_;
+    std::vector<Readout> readouts_;
     std::vector<std::uint16_t> kinds_;
     std::vector<std::uint16_t> dn_;
 };

@@ -84,12 +84,14 @@ nlohmann::ordered_json run_json(const std::string& name, const StreamHeader& hea
                                 const StreamReport& report, std::int64_t slots) {
     constexpr int kLanes = 12;               // pixels of the diagram
     constexpr std::int64_t kLaneSlots = 64;  // the most slots of it
+    const std::int64_t end =
+        header.switches.empty() ? slots : std::min(slots, header.switches.front().slot);
     return {{"name", name},
             {"stream", stream_json(header, report)},
             {"command", or_null(command_of(header.provenance))},
             {"filter", filter_json(header.cfa)},
             {"lanes", lanes_json(header.schedule, header.shape, kLanes,
-                                 std::clamp(slots, std::int64_t{1}, kLaneSlots))}};
+                                 std::clamp(end, std::int64_t{1}, kLaneSlots))}};
 }
 
 std::string stream_text(const StreamHeader& header, const StreamReport& report) {

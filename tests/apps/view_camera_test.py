@@ -220,6 +220,73 @@ class ViewCameraTest(ServedCamera):
         for part, shown in (("k", kinds), ("d", dn)):
             np.testing.assert_array_equal(np.frombuffer(clip.ask(f"plane/r0{part}-30")[2], "<u2"), shown)
 
+    def change_sensor(self, viewer, changes):
+        """The first slot of the changed sensor."""
+        self.act(viewer, "sensor", changes=changes)
+        [*_, slot] = viewer.json("status")["switched"]
+        self.assertIn(f"from slot {slot} {changes}", [event["text"] for event in viewer.json("camera")["events"]])
+        return slot
+
+    def test_the_sensor_of_capture_live_changes_from_the_page(self):
+        light = (np.round(self.light[0] * FULL_SCALE) / FULL_SCALE).astype(np.float32)
+        self.write_array("still.npy", np.broadcast_to(light, (600, ROWS, COLS)))
+        self.serve("still.npy")
+        live = self.start_program("capture", "live", self.address, "-o", "clip.stipple", "--frames", 600, "--view",
+                                  "--schedule", "tiled", stdout=subprocess.PIPE)
+        self.addCleanup(live.communicate)
+        self.addCleanup(live.kill)
+        viewer = Viewer.of(live.stderr.readline().split()[-1])
+        self.until(lambda: viewer.json("status")["slots"] > 40)
+        for changes, text in (("", "none of"), ("gain=2", "none of"), ("schedule=no_such", "no_such"),
+                              ("sensor.bit_depth=12", "only schedule"), ("schedule=two_bucket", "interleaved")):
+            self.assertIn(text, self.act(viewer, "sensor", 400, changes=changes))
+        changes = ["schedule=random,seed=3", "sensor.full_scale_e=8000"]
+        first = self.change_sensor(viewer, changes[0])
+        self.assertEqual(viewer.json("camera")["sensor"], {"schedule": "random", "seed": 3, "fixed": None})
+        self.until(lambda: viewer.json("status")["slots"] > first + 40)
+        second = self.change_sensor(viewer, changes[1])
+        self.until(lambda: viewer.json("status")["slots"] > second + 40)
+        slots = [first - 1, first, first + 5, second - 1, second, second + 30]
+        shown = {slot: viewer.ask(f"plane/r0d-{slot}")[2] for slot in slots}
+        _, codes = viewer.picture(1, second + 4)
+        self.assertLess(np.sqrt(np.mean((light_of(codes) - light.ravel()) ** 2)), 0.06)
+        live.terminate()
+        live.wait(timeout=60)
+        [one, two] = self.figures("info", "clip.stipple")["switches"]
+        self.assertEqual((one["slot"], two["slot"]), (first, second))
+        self.succeed("emulate", "still.npy", "-o", "again.stipple", "--schedule", "tiled",
+                     "--switch", f"{first}:{changes[0]}", "--switch", f"{second}:{changes[1]}")
+        clip, again = Viewer(self, "clip.stipple"), Viewer(self, "again.stipple")
+        for slot, dn in shown.items():
+            self.assertGreater(len(dn), 0)
+            self.assertEqual(clip.ask(f"plane/r0d-{slot}")[2], dn)
+            of_emulate = np.frombuffer(again.ask(f"plane/r0d-{slot}")[2], "<u2")
+            self.assertLess(np.mean(np.frombuffer(dn, "<u2") != of_emulate), 0.001)  # the light may differ by its last bit
+        self.succeed("decode", "clip.stipple", "-o", "decoded.npy", "--method", "fast")
+        decoded = self.array("decoded.npy")[first - 20:second + 20]
+        self.assertLess(np.sqrt(np.mean((decoded - light) ** 2)), 0.06)
+
+    def test_the_sensor_of_a_viewed_camera_changes_from_the_page(self):
+        self.write_array("still.npy", np.broadcast_to(self.light[:1], self.light.shape))
+        self.serve("still.npy")
+        viewer = self.view("--schedule", "tiled")
+        for changes in ("seed=2", "schedule=random", "seed=5,sensor.full_scale_e=9000"):
+            slots = viewer.json("status")["slots"]
+            self.until(lambda: viewer.json("status")["slots"] > slots + 30)
+            slot = self.change_sensor(viewer, changes)
+        self.until(lambda: viewer.json("status")["slots"] > slot + 30)
+        for at in (slot, slot + 10):
+            _, codes = viewer.picture(1, at)
+            self.assertLess(np.sqrt(np.mean((light_of(codes) - self.light[0].ravel()) ** 2)), 0.06)
+        self.act(viewer, "set", feature="Height", value=ROWS // 2, stopped=1)  # opens the camera anew
+        self.assertEqual(viewer.json("camera")["sensor"]["seed"], 5)
+
+    def test_a_sensor_that_cannot_change_says_why(self):
+        self.serve()
+        viewer = self.view("--sensor", "lux1310")
+        self.assertIn("[timing]", viewer.json("camera")["sensor"]["fixed"])
+        self.assertIn("[timing]", self.act(viewer, "sensor", 400, changes="seed=2"))
+
     def test_what_cannot_be_viewed_is_told(self):
         self.serve()
         self.fails(INPUT, ["NoSuchFeature"], "view", self.address, "--set", "camera.NoSuchFeature=1")

@@ -103,6 +103,31 @@ class ViewTest(ProgramTest):
             expected = np.where(decoded[slot].ravel() < 2.0 ** -14.01, 0, decoded[slot].ravel())
             np.testing.assert_allclose(light_of(codes), expected, rtol=0.0028, atol=2.0 ** -14)
 
+    def test_a_stream_that_changes_its_schedule(self):
+        self.make_clip("--luminance", "--schedule", "tiled", "--switch", "24:schedule=random,sensor.full_scale_e=8000")
+        viewer = Viewer(self, "clip.stipple", "--method", "fast")
+        for method, least in (("live", 0), ("fast", 2)):
+            self.succeed("decode", "clip.stipple", "-o", "decoded.npy", "--method", method, "--force")
+            decoded = self.array("decoded.npy")
+            for slot in (10, 23, 24, 40, SLOTS - 1):
+                fields, codes = viewer.picture(0, slot, than=0)
+                while method == "fast" and fields["Stipple-Level"] != "3":
+                    fields, codes = viewer.picture(0, slot, than=int(fields["Stipple-Level"]))
+                if fields["Stipple-Method"] == method:  # else a better one was there
+                    expected = np.where(decoded[slot].ravel() < 2.0 ** -14.01, 0, decoded[slot].ravel())
+                    np.testing.assert_allclose(light_of(codes), expected, rtol=0.0028, atol=2.0 ** -14)
+        self.assertEqual(viewer.json("status")["switched"], [24])
+        read = sum(np.count_nonzero(np.frombuffer(viewer.ask(f"plane/r0k-{slot}")[2], "<u2")) for slot in range(SLOTS))
+        self.assertEqual(read, self.figures("info", "clip.stipple")["samples"])
+        run = viewer.json("run", run=0)
+        self.assertEqual([part["slot"] for part in run["stream"]["switches"]], [24])
+        # Exposures without a gap, also across the switch
+        slots = [(slot, run["samples"]["exposures"][kind]) for slot, kind, _
+                 in viewer.json("samples", run=0, row=5, col=7, first=0, end=SLOTS)]
+        for (before, _), (slot, exposure) in zip(slots, slots[1:]):
+            self.assertEqual(exposure["span_slots"], slot - before)
+            self.assertEqual(exposure["readout"], 0 if slot < 24 else 1)
+
     def test_samples_of_a_pixel_are_those_of_the_stream(self):
         self.make_clip("--luminance", "--schedule", "tiled")
         viewer = Viewer(self, "clip.stipple")
@@ -158,7 +183,7 @@ class ViewTest(ProgramTest):
         self.assertLess(status["slots"], SLOTS)
         self.assertEqual(viewer.picture(0, status["slots"] - 1)[1].size, ROWS * COLS)
         (self.folder / "live.stipple").write_bytes(data)
-        self.assertEqual(viewer.json("status"), {"slots": SLOTS, "first": 0, "complete": True})
+        self.assertEqual(viewer.json("status"), {"slots": SLOTS, "first": 0, "complete": True, "switched": [0]})
         self.assertEqual(viewer.picture(0, SLOTS - 1)[1].size, ROWS * COLS)
 
     def test_footage_and_truth_are_shown_as_they_are(self):
@@ -205,6 +230,34 @@ class ViewTest(ProgramTest):
         self.assertEqual(done.returncode, DEVICE, done.stderr)  # nobody sees its address
         first = Viewer(self, "clip.stipple")
         self.fails(DEVICE, [f"127.0.0.1:{first.port}", "--port"], "view", "clip.stipple", "--port", first.port)
+
+    def test_a_rig_is_shown_by_its_streams(self):
+        self.make_clip()
+        (self.folder / "rig.toml").write_text('sensors = ["left", "right"]\naperture = "own"\nright = { phase_slots = 3 }\n')
+        self.succeed("emulate", "scene.npy", "-o", "rig", "--rig", "rig.toml", "--luminance")
+        viewer = Viewer(self, "rig")
+        self.assertEqual([viewer.json("run", run=run)["name"] for run in (0, 1)], ["left", "right"])
+        self.assertEqual(viewer.picture(1, 10)[1].size, ROWS * COLS)
+
+    def test_results_of_explore_are_shown_by_their_page(self):
+        self.make_clip("--luminance")
+        (self.folder / "space.toml").write_text("[axes]\nsensor = 'paper'\nschedule = ['tiled', 'full4x']\nmethod = 'naive'\n")
+        self.succeed("explore", "space.toml", "-o", "results")
+        viewer = Viewer(self, "results")
+        self.assertEqual(viewer.ask()[2], (self.folder / "results/report.html").read_bytes())
+        self.assertEqual(viewer.ask("status")[0], 404)
+        self.fails(INPUT, ["results", "a page of their own"], "view", "clip.stipple", "results")
+        (self.folder / "results/report.html").unlink()
+        self.fails(INPUT, ["results", "--no-report"], "view", "results")
+
+    def test_a_mosaic_shows_the_colours_of_its_cells(self):
+        mosaic = np.random.default_rng(2).integers(0, 256, (3, ROWS, COLS), dtype=np.uint8)
+        (self.folder / "mosaic.raw").write_bytes(mosaic.tobytes())
+        viewer = Viewer(self, "mosaic.raw", "--raw", f"{COLS}x{ROWS}:bayerrg8", "--transfer", "linear")
+        light = mosaic[1] / 255
+        colours = np.stack([light[::2, ::2], (light[::2, 1::2] + light[1::2, ::2]) / 2, light[1::2, 1::2]])
+        expected = np.repeat(np.repeat(colours, 2, 1), 2, 2).ravel()
+        np.testing.assert_allclose(light_of(viewer.picture(0, 1)[1]), expected, rtol=0.003, atol=2.0 ** -14)
 
     def test_a_signal_ends_it(self):
         self.make_clip("--luminance")

@@ -70,7 +70,7 @@ async function sampleAt(runIndex, slot, pixel, colour) {
   for (let i = 0; i < at; ++i) before += kinds[i] > 0;
   const exposure = run.samples.exposures[kinds[at] - 1];
   const first = slot - exposure.span_slots + 1;
-  const response = responseOf(run, pixel, exposure.light_slots);
+  const response = responseOf(run, pixel, exposure);
   return {first, slot, exposure,
           ...lightOfSample(response, dn[before * dnPlanes(run) + index], exposure.light_slots)};
 }

@@ -32,11 +32,11 @@ async function sampleImage(runIndex, slot) {
   for (let i = 0, next = 0; i < pixelCount; ++i) {
     image.data.set([...kNoSample, 255], 4 * i);
     if (!kinds || kinds[i] === 0) continue;
-    const lightSlots = run.samples.exposures[kinds[i] - 1].light_slots;
-    const response = responseOf(run, {row: Math.floor(i / area.cols), col: i % area.cols}, lightSlots);
+    const exposure = run.samples.exposures[kinds[i] - 1];
+    const response = responseOf(run, {row: Math.floor(i / area.cols), col: i % area.cols}, exposure);
     for (const [colour, table] of [red, green, blue].entries()) {
       const value = dn[next + Math.min(colour, planes - 1)];
-      const {light} = lightOfSample(response, value, lightSlots);
+      const {light} = lightOfSample(response, value, exposure.light_slots);
       image.data[4 * i + colour] = table[codeOfLight(Math.max(light, 0))];
     }
     next += planes;

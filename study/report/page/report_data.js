@@ -24,12 +24,12 @@ function picture(video, slot) {
   return plane(`v${video}-${pictureSlot(slot)}`);
 }
 
-/** The response of a pixel of the area to an exposure with so many open slots. */
-function responseOf(run, pixel, lightSlots) {
+/** The response of a pixel of the area to an exposure. */
+function responseOf(run, pixel, {light_slots: lightSlots, readout}) {
   const {response_rows: rows, response_cols: cols, responses} = run.samples;
   const row = (pixel.row + area.first_row) % rows;
   const col = (pixel.col + area.first_col) % cols;
-  return responses[row * cols + col][lightSlots];
+  return responses[readout][row * cols + col][lightSlots];
 }
 
 /** Mean light of a slot of the exposure and its standard deviation, by the sensor's calibration. */

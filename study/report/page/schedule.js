@@ -21,7 +21,8 @@ function storeCount(run) {
 
 /** Lengths of the exposures of a run, each with a colour. */
 function lengthColours(run) {
-  const lengths = [...new Set(run.lanes.flatMap((lane) => lane.exposures.map((e) => lightSlots(e[3]))))];
+  const lengths = [...new Set([...run.samples.exposures.map((exposure) => exposure.light_slots),
+                               ...run.lanes.flatMap((lane) => lane.exposures.map((e) => lightSlots(e[3])))])];
   lengths.sort((a, b) => a - b);
   const step = (kLengthColours.length - 1) / Math.max(lengths.length - 1, 1);
   return new Map(lengths.map((length, i) => [length, kLengthColours[Math.round(i * step)]]));
@@ -121,6 +122,10 @@ function markScheduleSlot(xOf, slots) {
   now.setAttribute('width', state.slot < slots ? xOf(state.slot + 1) - xOf(state.slot) : 0);
 }
 
+function switchesText({stream}) {
+  return (stream.switches ?? []).map(({slot, schedule_name: name}) => ` From slot ${slot} on: schedule ${name}.`).join('');
+}
+
 function showScheduleText() {
   const {schedule} = data.runs[scheduleRun].stream;
   const swatch = ([length, colour]) => {
@@ -134,7 +139,7 @@ function showScheduleText() {
     `${counted(schedule.period_slots, 'slot')}, ${shown(schedule.samples_per_pixel_slot)} samples per pixel and slot, ` +
     `${shown(100 * schedule.light_throughput)} % of the light. A lane is a pixel (row, column), a box an exposure, a ` +
     `dot its readout${storeCount(data.runs[scheduleRun]) > 1 ? ', its upper and lower half a charge store' : ''}. ` +
-    'The last lane is the chosen pixel.';
+    `The last lane is the chosen pixel.${switchesText(data.runs[scheduleRun])}`;
 }
 
 function setUpSchedule() {

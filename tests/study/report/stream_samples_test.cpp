@@ -10,6 +10,8 @@
 
 #include "core/error.h"
 #include "decoder/measurements.h"
+#include "readout/sensor_file.h"
+#include "readout/stream_recorder.h"
 #include "stream/stream_reader.h"
 #include "tests/study/report/recorded_clip.h"
 #include "tests/support/temporary_folder.h"
@@ -25,11 +27,28 @@ constexpr int kSlots = 20;
 struct Samples {
     Samples(const SensorChoice& choice, FrameShape shape) {
         record_clip(folder / "a.stipple", choice, ramp(kSlots, shape));
-        StreamReader reader(folder / "a.stipple");
-        StreamSamples samples(reader.header(), kArea);
+        take(folder / "a.stipple");
+    }
+    /// Of a sensor that switches before a slot.
+    Samples(const SensorChoice& first, const SensorChoice& later, int slot, FrameShape shape) {
+        const SensorSetup setup = set_up_sensor(first, shape);
+        StreamRecorder recorder(folder / "a.stipple", setup, {.may_switch = true});
+        const FluxVideo video = ramp(kSlots, shape);
+        for (int i = 0; i < kSlots; ++i) {
+            if (i == slot) recorder.switch_to(set_up_sensor(later, shape));
+            recorder.expose(video.frame(i));
+        }
+        recorder.finish();
+        take(folder / "a.stipple");
+    }
+
+    void take(const std::filesystem::path& file) {
+        StreamReader reader(file);
+        reader.follow_switches();
         std::vector<SamplePacket> packets;
-        for (SamplePacket packet; reader.next(packet); packets.push_back(packet))
-            samples.add(packet);
+        for (SamplePacket packet; reader.next(packet);) packets.push_back(packet);
+        StreamSamples samples(reader.header(), kArea);
+        for (const SamplePacket& packet : packets) samples.add(packet);
         samples.finish();
         const auto colours = static_cast<std::size_t>(reader.header().shape.planes);
         json = samples.json();
@@ -81,9 +100,9 @@ void expect_samples_of_the_decoder(const Samples& samples, int planes) {
             const auto& exposure = samples.json["exposures"][kind - 1U];
             const int row = (kArea.first_row + pixel / kArea.cols) % response_rows;
             const int col = (kArea.first_col + pixel % kArea.cols) % response_cols;
-            const auto& response =
-                samples.json["responses"][static_cast<std::size_t>(row * response_cols + col)]
-                            [std::to_string(exposure["light_slots"].get<int>())];
+            const auto& response = samples.json["responses"][exposure["readout"].get<std::size_t>()]
+                                               [static_cast<std::size_t>(row * response_cols + col)]
+                                               [std::to_string(exposure["light_slots"].get<int>())];
             for (int plane = 0; plane < planes; ++plane, ++compared) {
                 const PageSample sample = page_sample(response, *dn++);
                 const auto voxel = static_cast<std::size_t>(
@@ -116,11 +135,19 @@ TEST(StreamSamplesTest, DarkCurrentToo) {
     expect_samples_of_the_decoder(Samples(warm, {.rows = 24, .cols = 32}), 1);
 }
 
+TEST(StreamSamplesTest, AcrossASwitchOfScheduleAndReadoutToo) {
+    const SensorChoice later{.schedule = "random", .settings = {"full_scale_e=3000"}, .seed = 4};
+    const FrameShape shape{.rows = 24, .cols = 32};
+    const Samples samples({.schedule = "tiled"}, later, 9, shape);
+    EXPECT_EQ(samples.json["responses"].size(), 2U);
+    expect_samples_of_the_decoder(samples, 1);
+}
+
 TEST(StreamSamplesTest, AnExposureHasItsOpenSlots) {
     const Samples samples({.schedule = "full4x"}, kShape);
-    EXPECT_EQ(
-        samples.json["exposures"],
-        nlohmann::ordered_json::parse(R"([{"span_slots":4,"light_slots":4,"open":[[0,4]]}])"));
+    EXPECT_EQ(samples.json["exposures"],
+              nlohmann::ordered_json::parse(
+                  R"([{"span_slots":4,"light_slots":4,"open":[[0,4]],"readout":0}])"));
     EXPECT_EQ(samples.planes.size(), 2 * kSlots / 4);
 }
 

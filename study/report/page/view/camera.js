@@ -8,6 +8,7 @@ const kShownFeatures = 200;
 const kFullScale = 0.998; // light: the code of 1 is within 0.27 %
 const kFocusPart = 0.02; // of the pixels, those with the strongest edges
 let features = [];
+let sensor = null; // of the last status
 
 async function act(what, keys = {}) {
   const response = await fetch(`camera/${what}?${new URLSearchParams(keys)}`, {method: 'POST'}).catch(tellFailure);
@@ -32,10 +33,36 @@ function showCamera(camera) {
   element('record').hidden = recording?.stop === false;
   element('recording').textContent = recording
     ? `${recording.file}: ${counted(recording.frames, 'frame')}, ${recording.lost} lost` : '';
+  showSensor(camera.sensor);
   element('camera-events').hidden = camera.events.length === 0;
   element('camera-events').replaceChildren(...camera.events.slice(-8).reverse().map(({seconds, text}) => (
     made('li', {}, `${shown(seconds)} s: ${text}`))));
   if (camera.ended) element('state').textContent = `The camera has ended: ${camera.ended}`;
+}
+
+/** What is running, unless it is just being changed. */
+function showSensor(now) {
+  if (JSON.stringify(now) === JSON.stringify(sensor)) return;
+  sensor = now;
+  const names = [...new Set([sensor.schedule, ...data.schedules])];
+  fillSelect(element('sensor-schedule'), names.map((value) => ({value, text: value})), sensor.schedule);
+  element('sensor-seed').value = sensor.seed;
+  if (sensor.fixed) element('sensor-answer').textContent = `It cannot change: ${sensor.fixed}.`;
+  for (const input of element('sensor-form').elements) input.disabled = sensor.fixed !== null;
+}
+
+/** Between two slots; the stream says from which one on. */
+async function changeSensor(event) {
+  event.preventDefault();
+  const chosen = {schedule: element('sensor-schedule').value, seed: element('sensor-seed').value};
+  const changes = Object.entries(chosen).filter(([key, value]) => value !== String(sensor[key]))
+    .map(([key, value]) => `${key}=${value}`);
+  changes.push(...element('sensor-keys').value.split(/\s+/).filter(Boolean));
+  if (changes.length === 0) return;
+  element('sensor-answer').textContent = 'setting up …';
+  const answer = await act('sensor', {changes: changes.join(',')});
+  element('sensor-answer').textContent = answer?.failure ?? changes.join(', ');
+  if (answer?.camera) showCamera(answer.camera);
 }
 
 async function askCamera() {
@@ -126,6 +153,7 @@ function setUpCamera() {
   if (!data.running_camera) return;
   element('camera-card').hidden = false;
   element('record').addEventListener('click', toggleRecording);
+  element('sensor-form').addEventListener('submit', changeSensor);
   element('features').addEventListener('toggle', () => { if (element('features').open) readFeatures(); });
   element('features-again').addEventListener('click', readFeatures);
   element('feature-filter').addEventListener('input', showFeatures);

@@ -39,6 +39,7 @@ async function followCamera() {
     if (!status) return;
     ({slots} = status);
     Object.assign(data, {slots, first: status.first});
+    await takeSwitches(status.switched);
     Object.assign(element('slot'), {min: status.first, max: slots - 1, disabled: slots === 1});
     element('play').disabled = slots === 1;
     if (followed !== null && state.slot !== followed) {
@@ -66,6 +67,7 @@ async function askStatus() {
   const status = await answered('status', {});
   if (!status) return;
   takeSlots(status.slots);
+  await takeSwitches(status.switched);
   element('follow-label').hidden = status.complete;
   element('state').textContent = status.complete ? '' : `The stream grows: ${counted(status.slots, 'slot')} so far.`;
   if (!status.complete) setTimeout(askStatus, kStatusMs);

@@ -37,6 +37,8 @@ async function broughtPlane(id) {
   }
   const response = await fetch(`plane/${id}`).catch(tellFailure);
   const values = response?.ok ? new Uint16Array(await response.arrayBuffer()) : [];
+  const run = Number(id.match(/^r(\d+)k-/)?.[1] ?? -1);
+  if (run >= 0 && values.some((kind) => kind > data.runs[run].samples.exposures.length)) await readRun(run);
   return values.length > 0 ? values : null;
 }
 
@@ -92,6 +94,21 @@ async function answered(path, keys) {
   return response?.ok ? response.json() : null;
 }
 
+/** Reads a run again: a switch of its schedule brings other exposures. */
+async function readRun(index) {
+  const run = await answered('run', {run: index});
+  if (!run) return;
+  data.runs[index] = run;
+  showScheduleText();
+  showSchedule();
+}
+
+/** `switched` is that of the status (view/view_page.h). */
+async function takeSwitches(switched) {
+  for (const [i, slot] of switched.entries())
+    if (slot !== (data.runs[i].stream.switches?.at(-1)?.slot ?? 0)) await readRun(i);
+}
+
 /** Light of a pixel in the pictures of a video that are there, as [slot, light]. */
 async function lightOverTime(video, {row, col}, plane) {
   const [first, end] = chartSlots();
@@ -101,14 +118,15 @@ async function lightOverTime(video, {row, col}, plane) {
 
 /** The samples of a pixel in the slots of the charts, by the slot in which they are read. */
 async function samplesOverTime(runIndex, pixel, colour) {
-  const run = data.runs[runIndex];
-  const index = dnIndex(run, pixel, colour);
+  const index = dnIndex(data.runs[runIndex], pixel, colour);
   if (index < 0) return [];
   const [first, end] = chartSlots();
   const list = await answered('samples', {run: runIndex, row: pixel.row, col: pixel.col, first, end});
+  if (list?.some(([, kind]) => kind >= data.runs[runIndex].samples.exposures.length)) await readRun(runIndex);
+  const run = data.runs[runIndex];
   return (list ?? []).map(([slot, kind, dn]) => {
     const exposure = run.samples.exposures[kind];
-    const response = responseOf(run, pixel, exposure.light_slots);
+    const response = responseOf(run, pixel, exposure);
     return {first: slot - exposure.span_slots + 1, slot, exposure,
             ...lightOfSample(response, dn[index], exposure.light_slots)};
   });
