@@ -1,6 +1,5 @@
 #include <fmt/format.h>
 
-#include <cstdio>
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <string>
@@ -72,7 +71,7 @@ void serve(const ServeOptions& options, const RunOptions& run) {
     JsonFile json(run);
     GigeServer server(*source, settings);
     print_text(ready_text(*source, settings) + "\n");
-    std::fflush(stdout);
+    flush_output();  // who waits for it finds the camera
     ClientReport clients(server);
     std::string said;
     server.run([&] {

@@ -2,8 +2,6 @@
 #include <fmt/format.h>
 #include <unistd.h>
 
-#include <cerrno>
-#include <cstdio>
 #include <cstdlib>
 #include <exception>
 #include <new>
@@ -115,8 +113,7 @@ CommandLine::Parsed run(int argc, char** argv) {
     const auto parsed = line.parse(argc, argv);
     action.options.notes_only = line.writes_to_standard_output();
     if (parsed == CommandLine::Parsed::kAction) run(action);
-    if (std::fflush(stdout) != 0)
-        throw std::system_error(errno, std::generic_category(), "standard output");
+    flush_output();
     return parsed;
 }
 

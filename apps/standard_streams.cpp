@@ -113,4 +113,9 @@ void print_text(std::string_view text) {
         throw std::system_error(errno, std::generic_category(), "standard output");
 }
 
+void flush_output() {
+    if (std::fflush(stdout) != 0)
+        throw std::system_error(errno, std::generic_category(), "standard output");
+}
+
 }  // namespace stipple

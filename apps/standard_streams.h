@@ -87,5 +87,7 @@ void report_kept(const char* output, Text what = kAllBefore) noexcept {
 /// Writes text to standard output. \throws std::system_error at "standard output" if it cannot be
 /// written.
 void print_text(std::string_view text);
+/// Hands over what was printed so far. \throws std::system_error as print_text.
+void flush_output();
 
 }  // namespace stipple

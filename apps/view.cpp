@@ -4,9 +4,7 @@
 
 #include <algorithm>
 #include <array>
-#include <cerrno>
 #include <chrono>
-#include <cstdio>
 #include <filesystem>
 #include <memory>
 #include <optional>
@@ -146,8 +144,7 @@ void serve(Page& page, nlohmann::ordered_json figures, const ViewArguments& argu
     figures["url"] = server.url();
     json.write(figures);
     run.say(fmt::format("{}\nOpen this address in a browser. Ctrl-C ends the page.", server.url()));
-    if (std::fflush(stdout) != 0)  // a page whose address nobody sees
-        throw std::system_error(errno, std::generic_category(), "standard output");
+    flush_output();  // or nobody sees the address
     if (arguments.open) open_browser(server.url());
     while (stop_signal() == 0) std::this_thread::sleep_for(std::chrono::milliseconds(100));
     page.end();

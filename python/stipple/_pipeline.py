@@ -6,7 +6,7 @@ import tempfile
 import weakref
 from os import PathLike
 from pathlib import Path
-from typing import Any, Callable, Mapping, Optional, Tuple, Union
+from typing import Any, Callable, Dict, Mapping, Optional, Tuple, Union
 
 import numpy as np
 import numpy.typing as npt
@@ -122,6 +122,7 @@ def emulate(
     *,
     output: Optional[Name] = None,
     force: bool = False,
+    switches: Mapping[int, Mapping[str, object]] = {},
     overrun: str = "stretch",
     transfer: Optional[str] = None,
     luminance: bool = False,
@@ -145,6 +146,8 @@ def emulate(
     output: a new .stipple file. Without it the stream lies in a temporary file (of the folder TMPDIR) that
         goes with the Stream; Stream.save copies it.
     force: replace a file that is there.
+    switches: from a slot on (1 or later) another "sensor", "schedule" or "seed", as these arguments, without a
+        reset: {100: {"schedule": "tiled"}, 200: {"seed": 2}}. What may change docs/schedules.md says.
     overrun: what a sensor with timing does if a readout takes longer than its slot, "stretch" or "drop".
     transfer: how the numbers map to light, "linear" (default), "gamma22", "srgb", "bt709", "pq", "hlg", or
         "auto": as the file declares.
@@ -171,6 +174,12 @@ def emulate(
     reading.set_rate(frames_hz)
     footage = _stipple.Footage(video, reading)
     setup = _stipple.Setup(footage, sensor, schedule, seed, overrun)
+    now: Dict[str, Any] = {"sensor": sensor, "schedule": schedule, "seed": seed}
+    for slot, changes in sorted(switches.items()):
+        if unknown := set(changes) - set(now):
+            raise ValueError(f"switches: {sorted(unknown)} is none of sensor, schedule, seed")
+        now = {**now, **changes}
+        setup.switch_to(_stipple.Setup(footage, now["sensor"], now["schedule"], now["seed"], overrun), slot)
     with _stipple.Threads(threads):
         return _stipple.emulate(footage, setup, output, force, progress)
 

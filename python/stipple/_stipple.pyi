@@ -234,6 +234,7 @@ class Footage:
 
 class Setup:
     def __init__(self, footage: Footage, sensor: object, schedule: object, seed: int, overrun: str) -> None: ...
+    def switch_to(self, setup: Setup, slot: int) -> None: ...
 
 class DecodeTask:
     def __init__(

@@ -3,6 +3,7 @@ them, recordings and features, and a camera that goes away."""
 
 import json
 import os
+import resource
 import socket
 import subprocess
 import threading
@@ -144,6 +145,24 @@ class ViewCameraTest(ServedCamera):
         self.assertEqual(viewer.json("camera")["lost"]["queue_drop"], 0)
         [file] = self.folder.glob("*.strec")
         self.assertEqual(self.figures("info", file)["frames"], len(records_of(file)))
+
+    def test_a_full_disk_ends_a_recording_and_says_so(self):
+        self.serve()
+        limit = (300_000, 300_000)  # of a file, in bytes: some 50 frames
+        program = self.start_program("view", self.address, stdout=subprocess.PIPE,
+                                     preexec_fn=lambda: resource.setrlimit(resource.RLIMIT_FSIZE, limit))
+        self.addCleanup(program.communicate)
+        self.addCleanup(program.terminate)
+        viewer = Viewer.of(program.stdout.readline().strip())
+        self.act(viewer, "record")
+        told = self.until(lambda: [event["text"] for event in viewer.json("camera")["events"] if ".strec" in event["text"]])
+        self.assertIn("File too large", told[-1])
+        self.assertIsNone(viewer.json("camera")["recording"])
+        frames = viewer.json("camera")["frames"]
+        self.until(lambda: viewer.json("camera")["frames"] > frames)
+        [file] = self.folder.glob("*.strec*")
+        self.assertIn(file.name, told[-1])
+        self.assertGreater(len(records_of(file)), 10)
 
     def test_a_recording_under_way_is_kept_at_the_end(self):
         self.serve()

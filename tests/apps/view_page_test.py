@@ -189,6 +189,18 @@ class CameraPageTest(BrowserTest, ServedCamera):
         self.set_feature("Height", "24")
         self.wait(lambda: self.script("return data.frame.rows") == 24)
 
+    def test_another_schedule_is_chosen_on_the_page(self):
+        self.script("document.getElementById('sensor').open = true")
+        self.wait(lambda: self.element("sensor-schedule").get_attribute("value") == "random")
+        self.element("sensor-schedule").find_element(By.CSS_SELECTOR, "option[value=tiled]").click()
+        self.element("sensor-keys").send_keys("sensor.full_scale_e=8000")
+        self.element("sensor-form").find_element(By.TAG_NAME, "button").click()
+        self.wait(lambda: "schedule=tiled,sensor.full_scale_e=8000" in self.element("camera-events").text)
+        self.wait(lambda: "on: schedule tiled." in self.element("schedule-hint").text)
+        self.wait(lambda: self.script("return data.runs[0].samples.responses.length") == 2)
+        self.script("choosePixel(10, 10)")
+        self.wait(lambda: self.element("pixel-name").text.endswith("samples"))
+
     def test_edges_and_clipped_pixels_are_marked(self):
         self.script("choose({a: 'focus', b: 'focus'})")
         self.wait(lambda: self.element("name-a").text == "camera, focus and clipping")

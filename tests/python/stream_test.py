@@ -75,6 +75,21 @@ class StreamTest(ProgramTest):
         with self.assertRaisesRegex(ValueError, "may change its schedule"):
             stream.exposures()
 
+    def test_switches_are_those_of_the_program(self):
+        self.write_array("light.npy", np.full((60, 8, 12), 0.1))
+        self.succeed("emulate", "light.npy", "-o", "clip.stipple", "--switch", "20:schedule=tiled,seed=3",
+                     "--switch", "24:sensor.full_scale_e=4000")
+        clip = stipple.Stream.open(self.folder / "clip.stipple")
+        stream = stipple.emulate(self.folder / "light.npy", switches={
+            24: {"sensor": stipple.Sensor("paper", {"full_scale_e": 4000})}, 20: {"schedule": "tiled", "seed": 3}})
+        for ours, theirs in zip(stream, clip):
+            np.testing.assert_array_equal(ours, theirs)
+        self.assertEqual(stream.slots(), clip.slots())
+        for switches, text in (({0: {"seed": 2}}, "slot 0"), ({5: {"gain": 2}}, "gain"), ({5: {"sensor": "lux1310"}}, "timing"),
+                               ({5: {"schedule": "two_bucket"}}, "interleaved")):
+            with self.assertRaisesRegex(ValueError, text):
+                stipple.emulate(np.full((9, 8, 12), 0.1), switches=switches)
+
     def test_a_slot_beyond_the_end_is_an_IndexError(self):
         stream = stipple.emulate(np.full((5, 6, 10), 0.2))
         for slot in (-1, 5):

@@ -123,7 +123,7 @@ function markScheduleSlot(xOf, slots) {
 }
 
 function switchesText({stream}) {
-  return (stream.switches ?? []).map(({slot, schedule_name: name}) => ` From slot ${slot} on: schedule ${name}.`).join('');
+  return (stream.switches ?? []).map(({slot, schedule}) => ` From slot ${slot} on: schedule ${schedule}.`).join('');
 }
 
 function showScheduleText() {
