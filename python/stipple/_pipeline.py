@@ -6,7 +6,7 @@ import tempfile
 import weakref
 from os import PathLike
 from pathlib import Path
-from typing import Any, Callable, Dict, Mapping, Optional, Tuple, Union
+from typing import Any, Callable, Dict, Iterator, Mapping, Optional, Tuple, Union
 
 import numpy as np
 import numpy.typing as npt
@@ -91,6 +91,32 @@ class Schedule(_stipple.Schedule):
         return _with_file(_stipple.schedule_text(_rows(exposures), tile, period_slots, name, weights), size)
 
 
+def _in_order(
+    switches: Mapping[int, Mapping[str, object]], now: Dict[str, Any]
+) -> Iterator[Tuple[int, Dict[str, Any]]]:
+    """The slots of the switches, each with all that holds from then on."""
+    for slot, changes in sorted(switches.items()):
+        if unknown := set(changes) - set(now):
+            raise ValueError(f"switches: {sorted(unknown)} is none of {', '.join(now)}")
+        now = {**now, **changes}
+        yield slot, now
+
+
+def _reading(
+    transfer: Optional[str],
+    luminance: bool,
+    max_value: Optional[float],
+    raw: Optional[str],
+    min_value: Optional[float],
+    scale: float = 1.0,
+) -> _stipple.Reading:
+    reading = _stipple.Reading(transfer, luminance, max_value)
+    reading.set_raw(raw)
+    reading.set_min_value(min_value)
+    reading.set_scale(scale)
+    return reading
+
+
 def load(
     video: Video,
     *,
@@ -107,10 +133,7 @@ def load(
 
     video, transfer, luminance, max_value, min_value, raw, scale, progress: as for `emulate`.
     """
-    reading = _stipple.Reading(transfer, luminance, max_value)
-    reading.set_raw(raw)
-    reading.set_min_value(min_value)
-    reading.set_scale(scale)
+    reading = _reading(transfer, luminance, max_value, raw, min_value, scale)
     return _stipple.load(_stipple.Footage(video, reading), progress)
 
 
@@ -146,8 +169,7 @@ def emulate(
     output: a new .stipple file. Without it the stream lies in a temporary file (of the folder TMPDIR) that
         goes with the Stream; Stream.save copies it.
     force: replace a file that is there.
-    switches: from a slot on (1 or later) another "sensor", "schedule" or "seed", as these arguments, without a
-        reset: {100: {"schedule": "tiled"}, 200: {"seed": 2}}. What may change docs/schedules.md says.
+    switches: what changes from a slot on, {100: {"schedule": "tiled"}, 200: {"seed": 2}} (docs/schedules.md).
     overrun: what a sensor with timing does if a readout takes longer than its slot, "stretch" or "drop".
     transfer: how the numbers map to light, "linear" (default), "gamma22", "srgb", "bt709", "pq", "hlg", or
         "auto": as the file declares.
@@ -166,19 +188,12 @@ def emulate(
     does not name the footage. Raises ValueError, or OSError for files. Footage whose frame rate, exposure time or
     black level does not suit the sensor is a UserWarning, and so are missing frames and damage of a recording.
     """
-    reading = _stipple.Reading(transfer, luminance, max_value)
-    reading.set_raw(raw)
-    reading.set_min_value(min_value)
-    reading.set_scale(scale)
+    reading = _reading(transfer, luminance, max_value, raw, min_value, scale)
     reading.set_resampling(resample)
     reading.set_rate(frames_hz)
     footage = _stipple.Footage(video, reading)
     setup = _stipple.Setup(footage, sensor, schedule, seed, overrun)
-    now: Dict[str, Any] = {"sensor": sensor, "schedule": schedule, "seed": seed}
-    for slot, changes in sorted(switches.items()):
-        if unknown := set(changes) - set(now):
-            raise ValueError(f"switches: {sorted(unknown)} is none of sensor, schedule, seed")
-        now = {**now, **changes}
+    for slot, now in _in_order(switches, {"sensor": sensor, "schedule": schedule, "seed": seed}):
         setup.switch_to(_stipple.Setup(footage, now["sensor"], now["schedule"], now["seed"], overrun), slot)
     with _stipple.Threads(threads):
         return _stipple.emulate(footage, setup, output, force, progress)
@@ -256,9 +271,7 @@ def compare(
     reading = _stipple.Reading("linear", luminance, None)
     reading.take_negative()
     a = _stipple.Footage(result, reading)
-    reading = _stipple.Reading(transfer, luminance, None)
-    reading.set_raw(raw)
-    reading.set_min_value(min_value)
+    reading = _reading(transfer, luminance, None, raw, min_value)
     b = _stipple.Footage(reference, reading)
     comparison = _stipple.Comparison(
         margin, max_value, peak, cd_per_unit, until, pu21_ssim, pixels_per_degree

@@ -141,6 +141,13 @@ class OutputsTest(ProgramTest):
             self.assertIn("No space left", done.communicate()[1])
         self.assertEqual(done.returncode, DEVICE, PROGRAM)
 
+    def test_a_camera_whose_address_cannot_be_told_ends(self):
+        self.succeed(*SYNTH, "light.npy")
+        with open("/dev/full", "w", encoding="utf-8") as full:
+            camera = self.start_program("capture", "serve", "light.npy", "--address", "127.7.7.7", stdout=full)
+            self.assertIn("standard output", camera.communicate(timeout=60)[1])
+        self.assertEqual(camera.returncode, DEVICE)
+
     def test_a_link_in_a_folder_that_the_program_fills_is_neither_followed_nor_replaced(self):
         self.write_stream(slots=64)
         (self.folder / "space.toml").write_text('[axes]\nsensor = ["paper"]\nschedule = ["tiled"]\n'

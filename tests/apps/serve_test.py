@@ -375,12 +375,6 @@ class ServeTest(ProgramTest):
             self.fails(USAGE, ["--serial", f"{len(serial)} bytes"], "capture", "serve", scene,
                        "--serial", serial)
 
-    def test_a_camera_whose_address_cannot_be_told_ends(self):
-        with open("/dev/full", "w", encoding="utf-8") as full:
-            camera = self.start_program("capture", "serve", self.scene(), "--address", own_address(91), stdout=full)
-            self.assertIn("standard output", camera.communicate(timeout=60)[1])
-        self.assertEqual(camera.returncode, DEVICE)
-
     def test_footage_that_looks_coded_is_told(self):
         colour = self.write_png("f.png", np.full((8, 8, 3), 99))
         for mode in ("frames", "coded"):
