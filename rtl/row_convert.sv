@@ -6,7 +6,7 @@
 //     row_ready    `rest_clocks` later: the row may be transferred, the next one selected
 //
 // Each of them is a strobe of one clock. Without clocks between them they coincide, except that a
-// row takes at least a clock from `select` to `convert_end`. Precondition of `select`: is_free.
+// row takes at least a clock from `select` to `convert_end`, even without skipped rows. Precondition of `select`: is_free.
 // ADC c mod (COLS / COLUMNS_PER_ADC) converts column c, its columns one after another.
 module row_convert #(
     parameter int COLS = 8,
@@ -23,6 +23,7 @@ module row_convert #(
     input  logic [CLOCK_BITS-1:0] rest_clocks,
     output logic                  is_free,
     output logic                  convert,
+    output logic                  converts_selected,  // of the row selected now
     output logic                  convert_end,
     output logic [CLOCK_BITS-1:0] convert_clocks,  // settling and conversion, at convert_end
     output logic                  row_ready
@@ -32,15 +33,17 @@ module row_convert #(
     logic [CLOCK_BITS-1:0] to_convert, held_to_convert, to_adc, held_to_adc, rested;
     logic [COLS-1:0] held_columns;
     logic [COLS-1:0] unused_begun;
-    logic is_running, adc_start, adc_starts_later, adc_is_over;
+    logic converts_held, adc_start, adc_starts_later, adc_is_over;
 
-    assign is_running = select || is_busy;
     assign age        = select ? '0 : held_age;
     assign to_convert = select ? select_clocks : held_to_convert;
     assign to_adc     = select ? select_clocks + settle_clocks : held_to_adc;
 
-    assign convert          = is_running && age == to_convert;
-    assign adc_start        = is_running && age == to_adc;
+    assign converts_selected = select && select_clocks == '0;
+    assign converts_held     = is_busy && held_age == held_to_convert;
+
+    assign convert          = converts_selected || converts_held;
+    assign adc_start        = select ? to_adc == '0 : adc_starts_later;
     assign adc_starts_later = is_busy && held_age == held_to_adc;  // than the selection
     assign convert_end      = adc_clocks == '0 ? adc_starts_later : adc_began && adc_is_over;
     assign convert_clocks   = held_age - held_to_convert;

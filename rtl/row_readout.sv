@@ -47,6 +47,7 @@ module row_readout #(
     output logic                  may_select,
 
     output logic                          convert,
+    output logic [PLACE_BITS-1:0]         convert_row,
     output logic                          convert_end,
     output logic [PLACE_BITS-1:0]         adc_row,
     input  logic [DN_BITS-1:0]            adc_dn,
@@ -67,7 +68,7 @@ module row_readout #(
 );
     localparam int ROW_BITS = PLACE_BITS + 1 + 32 + COLS + DN_BITS;
 
-    logic columns_are_free, row_ready, link_free;
+    logic columns_are_free, converts_selected, row_ready, link_free;
     logic [1:0] latches, latches_now;  // in use
 
     assign latches_now = latches - 2'(link_free);
@@ -92,10 +93,12 @@ module row_readout #(
         .rest_clocks(is_sequential ? '0 : blanking_clocks),
         .is_free(columns_are_free),
         .convert,
+        .converts_selected,
         .convert_end,
         .convert_clocks,
         .row_ready
     );
+    assign convert_row        = converts_selected ? select_row : adc_row;
     assign ready_dn           = convert_end ? adc_dn : held_dn;
     assign row_convert_clocks = rot_clocks + (convert_end ? convert_clocks : held_convert_clocks);
 

@@ -69,6 +69,7 @@ module stipple_chip #(
     output logic                         select,
     output logic [PLACE_BITS-1:0]        select_row,  // dark rows first, row r is DARK_ROWS + r
     output logic                         convert,
+    output logic [PLACE_BITS-1:0]        convert_row,
     output logic                         convert_end,
     output logic [PLACE_BITS-1:0]        adc_row,
     input  logic [COLS*BIT_DEPTH-1:0]    adc_dn,
@@ -231,7 +232,7 @@ module stipple_chip #(
         .row_columns(is_dark ? window_columns : row_columns),
         .row_due(is_dark ? '0 : row_due),
         .may_transfer, .may_select,
-        .convert, .convert_end, .adc_row, .adc_dn, .transfer, .transfer_row, .channel_valid,
+        .convert, .convert_row, .convert_end, .adc_row, .adc_dn, .transfer, .transfer_row, .channel_valid,
         .channel_dn, .transfer_end, .row_done, .row_done_row, .rows_done, .scan_over,
         .sent_valid, .sent_is_last, .sent_due, .sent_dn, .timers_overflow
     );
@@ -306,7 +307,7 @@ module stipple_chip #(
         .m_axis_tlast
     );
 
-    logic has_no_time;  // a row without a clock between its selection and its DN
+    logic has_no_time;  // a row takes no clock from its selection to its DN
     assign has_no_time = select && rot_clocks == '0 && settle == '0 && adc_clocks == '0;
 
     always_ff @(posedge clk)

@@ -136,8 +136,7 @@ class VerilatedRun {
         if (events.slot_start.empty()) return;  // the tables are being filled
         if (chip_->scan_start) events.scan_start.push_back({now, 0});
         if (chip_->select) events.select.push_back({now, row(chip_->select_row)});
-        if (chip_->convert)
-            events.convert.push_back({now, row(chip_->select ? chip_->select_row : chip_->adc_row)});
+        if (chip_->convert) events.convert.push_back({now, row(chip_->convert_row)});
         if (chip_->convert_end) events.convert_end.push_back({now, row(chip_->adc_row)});
         if (chip_->transfer_end) events.transfer_end.push_back({now, events.transfer.back().row});
         if (chip_->transfer) events.transfer.push_back({now, row(chip_->transfer_row)});
