@@ -22,7 +22,7 @@ module stipple_chip #(
     parameter int PIXEL_BITS = 1,  // of the schedule memory
     parameter int DEPTH = 16,      // slots of the schedule memory
     parameter int BIT_DEPTH = 10,
-    parameter int DARK_ROWS = 2,   // max
+    parameter int DARK_ROWS = 2,   // max, at least 1
     parameter int WORD_BYTES = 8,  // of the stream; 8 WORD_BYTES >= CHANNELS x BIT_DEPTH
     parameter int WORDS = 1024,    // of packets that wait
     parameter int PACKETS = 16,
@@ -100,6 +100,7 @@ module stipple_chip #(
         if (8 * WORD_BYTES < CHANNELS * BIT_DEPTH)
             $fatal(1, "WORD_BYTES is less than a column of all channels");
         if (32 % WORD_BYTES != 0 || WORD_BYTES < 4) $fatal(1, "WORD_BYTES is none of 4, 8, 16, 32");
+        if (DARK_ROWS < 1) $fatal(1, "DARK_ROWS is 0");
         if (PIXEL_BITS < 1 || PIXEL_BITS > 3) $fatal(1, "PIXEL_BITS is not 1..3");
     end
 `endif

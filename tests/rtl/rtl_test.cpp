@@ -227,6 +227,17 @@ TEST(RtlTest, GivesTheFileOfTheEmulatorForTheSchedulesOfTheCatalogue) {
                                  "spatially_varying_exposure"})
         expect_the_emulator_s_file(
             model("small"), {.sensor = "lux1310", .schedule = schedule, .settings = {"slot_us=5"}});
+    for (const char* schedule :
+         {"tiled", "single_bump", "random_subset", "pixel_flutter", "two_bucket"})
+        expect_the_emulator_s_file(model("group"),
+                                   {.sensor = "lux1310",
+                                    .schedule = schedule,
+                                    .settings = {"slot_us=5", "charge_stores=2"},
+                                    .schedule_settings = {"tile_rows=12", "tile_cols=6"}});
+    expect_the_emulator_s_file(model("one"), {.sensor = "lux1310",
+                                              .schedule = "rolling",
+                                              .settings = {"slot_us=5"},
+                                              .schedule_settings = {"rows_per_slot=1"}});
 }
 
 }  // namespace
