@@ -1,7 +1,8 @@
 // Which pixels are due in which slot. After reset the tables are filled from the schedule memory,
 // in about (3 TILE_ROWS + 2 ROWS) x period clocks; then `is_ready` holds.
 //
-//  1. One period without readout finds the exposures under way at slot 0, by charge store.
+//  1. One period without readout finds the exposures under way at slot 0, by charge store, and the
+//     slots in which a pixel is open.
 //  2. Slots 0 .. period - 1: a pixel is due if it is read, but not if the exposure began before
 //     slot 0. Slots period .. 2 x period - 1 stand for all later ones: due is what is read.
 //  3. For each of these slots, the least columns that the busiest channel has in a row.
@@ -34,6 +35,8 @@ module due_tables #(
 
     input  logic [SLOT_BITS-1:0]            next_slot,
     output logic [ROWS-1:0]                 next_rows,  // with due pixels, or others of their groups
+    output logic                            next_is_open,   // a pixel of the tile is open in it
+    output logic                            after_is_open,  // ... in the slot after it
     input  logic [SLOT_BITS-1:0]            scan_slot,
     output logic [ROWS-1:0]                 scan_rows,
     output logic [SIDE_BITS-1:0]            scan_least,
@@ -49,6 +52,7 @@ module due_tables #(
     logic [TILE_COLS-1:0] due_words [0:2*DEPTH*TILE_ROWS-1];
     logic [TILE_ROWS-1:0] row_words [0:2*DEPTH-1];
     logic [SIDE_BITS-1:0] least_words [0:2*DEPTH-1];
+    logic [2*DEPTH-1:0] open_slots;  // of the period
 
     logic [1:0] step;
     logic [SLOT_BITS-1:0] slot, image_slot;
@@ -63,10 +67,18 @@ module due_tables #(
                   WORD_BITS'(of_row % SIDE_BITS'(TILE_ROWS));
     endfunction
 
+    function automatic logic [SLOT_BITS-1:0] in_period(input logic [SLOT_BITS-1:0] of_slot);
+        in_period = of_slot >= period ? of_slot - period : of_slot;
+    endfunction
+    logic [SLOT_BITS-1:0] next_in_period;
+    assign next_in_period = in_period(next_slot);
+    assign next_is_open   = open_slots[next_in_period];
+    assign after_is_open  = open_slots[in_period(next_in_period + 1'b1)];
+
     // Steps 1 and 2.
     logic [TILE_COLS-1:0] is_read, is_open, in_second, is_used, due;
     logic [2*TILE_COLS-1:0] early, early_next;
-    assign image_slot = slot >= period ? slot - period : slot;
+    assign image_slot = in_period(slot);
     assign image_address = ADDRESS_BITS'(image_slot) * ADDRESS_BITS'(TILE_ROWS) + ADDRESS_BITS'(row);
     assign early = step == WARM_UP && slot == '0 ? '0 : under_way[TILE_BITS'(row)];
     for (genvar c = 0; c < TILE_COLS; c = c + 1) begin : g_pixel
@@ -175,6 +187,7 @@ module due_tables #(
             due_words[word_at(slot, row)] <= due;
             row_words[slot][TILE_BITS'(row)] <= due != '0;
         end
+        if (step == WARM_UP) open_slots[slot] <= is_open != '0 || (row != '0 && open_slots[slot]);
         if (step == COUNT && is_last_row) least_words[slot] <= least_now;
         least <= step != COUNT || is_last_row ? '1 : least_now;
     end

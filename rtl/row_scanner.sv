@@ -23,6 +23,7 @@ module row_scanner #(
     input  logic                  may_select,
     input  logic                  scan_over,
     output logic                  scan_start,
+    output logic                  is_reading,  // a scan is under way
     output logic                  may_transfer,
     output logic                  select,
     output logic [PLACE_BITS-1:0] place,
@@ -55,6 +56,7 @@ module row_scanner #(
             if (first[i]) place = place | PLACE_BITS'(i);
     end
 
+    assign is_reading = scan_start || (is_scanning && !scan_over);
     assign select  = (scan_start || is_scanning) && may_select && pending != '0 &&
                      age >= select_wait;
     assign skipped = place - next_place;
@@ -65,7 +67,7 @@ module row_scanner #(
             is_scanning <= 1'b0;
             held_pending <= '0;
         end else begin
-            is_scanning <= scan_start || (is_scanning && !scan_over);
+            is_scanning <= is_reading;
             held_pending <= select ? pending & ~first : pending;
         end
 

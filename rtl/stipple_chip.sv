@@ -42,6 +42,7 @@ module stipple_chip #(
     input  logic [SLOT_BITS-1:0] period,  // slots, at most DEPTH
     input  logic         is_sequential,  // law of the row time: neither of the two: overlapped
     input  logic         is_full_width,
+    input  logic         exposes_while_reading,
     input  logic [31:0]  slot_clocks,    // of a slot, at least 1
     input  logic [31:0]  budget_clocks,  // a longer slot is an overrun; 0: none is
     input  logic [31:0]  rot_clocks,
@@ -114,7 +115,7 @@ module stipple_chip #(
     logic [15:0] scan_least;
     logic [COLS-1:0] row_due, row_columns, window_columns;
     logic [PLACE_BITS-1:0] skipped;
-    logic slot_waits, is_dark;
+    logic slot_waits, is_dark, next_is_open, after_is_open;
 
     schedule_memory #(
         .TILE_ROWS(TILE_ROWS), .TILE_COLS(TILE_COLS), .PIXEL_BITS(PIXEL_BITS), .DEPTH(DEPTH),
@@ -137,6 +138,8 @@ module stipple_chip #(
         .is_ready,
         .next_slot,
         .next_rows,
+        .next_is_open,
+        .after_is_open,
         .scan_slot,
         .scan_rows,
         .scan_least,
@@ -146,6 +149,7 @@ module stipple_chip #(
     );
 
     // Slots, and the queue of those with rows to read.
+    logic is_reading;
     logic slot_end, ended_has_rows, ended_overrun, slots_overflow;
     logic [ROWS-1:0] rows_done;
     logic scan_over;
@@ -154,10 +158,14 @@ module stipple_chip #(
         .clk, .rst,
         .is_ready,
         .period,
+        .exposes_while_reading,
         .slot_clocks(42'(slot_clocks)),
         .budget_clocks(42'(budget_clocks)),
         .next_rows,
+        .next_is_open,
+        .after_is_open,
         .rows_done,
+        .is_reading,
         .next_slot,
         .slot_start,
         .slot_end,
@@ -204,6 +212,7 @@ module stipple_chip #(
         .may_select,
         .scan_over,
         .scan_start,
+        .is_reading,
         .may_transfer,
         .select,
         .place(select_row),

@@ -22,10 +22,14 @@ struct NamedKind {
 };
 
 constexpr NamedKind kKinds[] = {
-    {"slot_start", &ChipEvents::slot_start},     {"scan_start", &ChipEvents::scan_start},
-    {"select", &ChipEvents::select},             {"convert", &ChipEvents::convert},
-    {"convert_end", &ChipEvents::convert_end},   {"transfer", &ChipEvents::transfer},
-    {"transfer_end", &ChipEvents::transfer_end}, {"row_done", &ChipEvents::row_done},
+    {"slot_start", &ChipEvents::slot_start},
+    {"scan_start", &ChipEvents::scan_start},
+    {"select", &ChipEvents::select},
+    {"convert", &ChipEvents::convert},
+    {"convert_end", &ChipEvents::convert_end},
+    {"transfer", &ChipEvents::transfer},
+    {"transfer_end", &ChipEvents::transfer_end},
+    {"row_done", &ChipEvents::row_done},
 };
 
 std::uint64_t little_endian(std::span<const std::uint8_t> bytes) {
@@ -104,8 +108,7 @@ StreamBytes read_stream_bytes(const std::filesystem::path& file) {
     return {.header = copy(0, header),
             .packets = copy(header, end),
             .end = copy(end, bytes.size()),
-            .header_crc =
-                static_cast<std::uint32_t>(little_endian(all.subspan(header - 4, 4)))};
+            .header_crc = static_cast<std::uint32_t>(little_endian(all.subspan(header - 4, 4)))};
 }
 
 std::vector<std::uint16_t> columns_of(const SamplePacket& packet, const ExposureSchedule& schedule,

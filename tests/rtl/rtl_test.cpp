@@ -104,12 +104,12 @@ std::vector<SamplePacket> draw_packets(const Comparison& it, const std::filesyst
     return packets;
 }
 
-
 /// Times of a random sensor that a chip of this size can have, and a window of it.
 Comparison random_comparison(const ChipModel& chip, const ExposureSchedule& schedule, Draw& draw) {
     ReadoutTiming timing = fitted(random_timing(draw), chip.size);
     timing.dark_rows = std::min(timing.dark_rows, chip.size.dark_rows);
     timing.bits_per_sample = chip.size.bit_depth;
+    timing.exposes_while_reading = draw(0, 3) > 0;
     if (timing.rot_clocks == 0 && timing.adc_clocks == 0 &&
         (timing.settle_clocks.empty() || timing.settle_clocks.front() == 0))
         timing.rot_clocks = 1;
@@ -125,7 +125,8 @@ Comparison random_comparison(const ChipModel& chip, const ExposureSchedule& sche
     ReadoutCost cost(timing, schedule, window, {});
     for (int slot = 0; slot < it.slots; ++slot) cost.add_next();
     if (draw(0, 3) > 0)
-        it.budget_clocks = draw(1, static_cast<int>(3 * cost.totals().readout_clocks / it.slots) + 9);
+        it.budget_clocks =
+            draw(1, static_cast<int>(3 * cost.totals().readout_clocks / it.slots) + 9);
     return it;
 }
 
@@ -216,15 +217,15 @@ void expect_the_emulator_s_file(const ChipModel& chip, const SensorChoice& choic
 TEST(RtlTest, GivesTheFileOfTheEmulatorForTiledOnEachLaw) {
     for (const char* sensor : {"lux1310", "imx273", "vita", "cmv4000"})
         for (const char* slot : {"slot_us=2", "slot_us=20"})
-            expect_the_emulator_s_file(
-                model("paper"), {.sensor = sensor, .schedule = "tiled", .settings = {slot}});
+            expect_the_emulator_s_file(model("paper"),
+                                       {.sensor = sensor, .schedule = "tiled", .settings = {slot}});
 }
 
 TEST(RtlTest, GivesTheFileOfTheEmulatorForTheSchedulesOfTheCatalogue) {
-    for (const char* schedule : {"alternating", "coded_rolling_shutter_exposure",
-                                 "coded_rolling_shutter_staggered", "dol", "flexible_voxels",
-                                 "full1x", "full4x", "multi_phase_2x2", "nd_mosaic",
-                                 "spatially_varying_exposure"})
+    for (const char* schedule :
+         {"alternating", "coded_rolling_shutter_exposure", "coded_rolling_shutter_staggered", "dol",
+          "flexible_voxels", "full1x", "full4x", "multi_phase_2x2", "nd_mosaic",
+          "spatially_varying_exposure"})
         expect_the_emulator_s_file(
             model("small"), {.sensor = "lux1310", .schedule = schedule, .settings = {"slot_us=5"}});
     for (const char* schedule :

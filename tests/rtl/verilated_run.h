@@ -44,8 +44,9 @@ void set_registers(Chip& chip, const ChipProgram& program) {
     chip.period = static_cast<std::uint8_t>(program.period_slots);
     chip.is_sequential = timing.row_timing == RowTiming::kSequential;
     chip.is_full_width = timing.row_timing == RowTiming::kFullWidth;
-    chip.slot_clocks = whole(std::max({program.budget_clocks, std::int64_t{1},
-                                       code_load_clocks(timing, program.window.rows)}));
+    chip.exposes_while_reading = timing.exposes_while_reading;
+    chip.slot_clocks = whole(std::max(
+        {program.budget_clocks, std::int64_t{1}, code_load_clocks(timing, program.window.rows)}));
     chip.budget_clocks = whole(program.budget_clocks);
     chip.rot_clocks = whole(timing.rot_clocks);
     chip.skip_row_clocks = whole(timing.skip_row_clocks);
@@ -60,10 +61,10 @@ void set_registers(Chip& chip, const ChipProgram& program) {
     chip.blanking_clocks = whole(timing.blanking_clocks);
     chip.clocks_per_column = whole(timing.clocks_per_column);
     chip.io_clocks = whole(timing.io_clocks);
-    chip.link_bits = static_cast<std::uint64_t>(timing.link_lanes > 0 ? timing.addressing.channels *
-                                                                            timing.bits_per_sample *
-                                                                            timing.clock_hz
-                                                                      : 0);
+    chip.link_bits = static_cast<std::uint64_t>(timing.link_lanes > 0
+                                                    ? timing.addressing.channels *
+                                                          timing.bits_per_sample * timing.clock_hz
+                                                    : 0);
     chip.link_rate = static_cast<std::uint64_t>(timing.link_lanes * timing.link_bps);
     chip.has_table = !timing.row_table_cols.empty();
     for (std::size_t i = 0; chip.has_table && i < sizeof chip.table_cols / 4; ++i) {
