@@ -1,0 +1,127 @@
+// Sends packets of samples (docs/stream_format.md) through an AXI-Stream port.
+//
+// Words of payloads and then the size of their packet are pushed into queues of WORDS and PACKETS;
+// a packet is sent once it is complete. Its header takes 32 / WORD_BYTES beats and one for its CRC,
+// which has 4 bytes; its payload a beat for each word, the last one with the bytes that are left.
+// tkeep tells the bytes of a beat, tlast the last beat of a packet. `overflow` is a clock in which a
+// queue was full: data are lost, as the chip cannot wait.
+//
+// `stream_crc` is the header CRC of the file, from which the CRC of packets continue.
+module packet_sender #(
+    parameter int WORD_BYTES = 4,  // 4, 8, 16 or 32
+    parameter int WORDS = 1024,    // a power of two
+    parameter int PACKETS = 16     // a power of two
+) (
+    input  logic                    clk,
+    input  logic                    rst,
+    input  logic [31:0]             stream_crc,
+    input  logic [15:0]             rows,
+    input  logic                    word_valid,
+    input  logic [8*WORD_BYTES-1:0] word,
+    input  logic                    packet_valid,
+    input  logic                    packet_overrun,
+    input  logic [52:0]             packet_slot,
+    input  logic [31:0]             packet_samples,
+    input  logic [31:0]             packet_bytes,
+    input  logic [31:0]             packet_crc,
+    output logic                    overflow,
+    output logic                    m_axis_tvalid,
+    input  logic                    m_axis_tready,
+    output logic [8*WORD_BYTES-1:0] m_axis_tdata,
+    output logic [WORD_BYTES-1:0]   m_axis_tkeep,
+    output logic                    m_axis_tlast
+);
+    localparam int HEADER_BEATS = 32 / WORD_BYTES;
+    localparam int COUNT_BITS = $clog2(WORD_BYTES + 1);
+    localparam logic [1:0] HEADER = 0, HEADER_CRC = 1, PAYLOAD = 2;
+
+    logic [1:0] part;
+    logic [5:0] beat;  // of the header
+    logic [31:0] left;  // bytes of the payload
+    logic [31:0] crc, crc_next, header_crc;
+    logic [255:0] header;
+    logic is_sent, is_whole_word, words_overflow, packets_overflow;
+
+    logic overrun;
+    logic [52:0] slot;
+    logic [31:0] samples, bytes, payload_crc;
+    logic has_packet, has_word;
+    logic [8*WORD_BYTES-1:0] payload;
+
+    fifo #(.WIDTH(8 * WORD_BYTES), .DEPTH(WORDS)) u_words (
+        .clk, .rst,
+        .push(word_valid),
+        .item(word),
+        .pop(is_sent && part == PAYLOAD),
+        .valid(has_word),
+        .head(payload),
+        .overflow(words_overflow)
+    );
+    fifo #(.WIDTH(150), .DEPTH(PACKETS)) u_packets (
+        .clk, .rst,
+        .push(packet_valid),
+        .item({packet_overrun, packet_slot, packet_samples, packet_bytes, packet_crc}),
+        .pop(is_sent && m_axis_tlast),
+        .valid(has_packet),
+        .head({overrun, slot, samples, bytes, payload_crc}),
+        .overflow(packets_overflow)
+    );
+    assign overflow = words_overflow || packets_overflow;
+
+    // The first byte is the lowest.
+    assign header = {payload_crc, bytes, samples, rows, 16'd0, 11'd0, slot, 16'd0, 7'd0, overrun,
+                     8'd1, 32'h4B50_53C5};
+
+    crc32c #(.BYTES(WORD_BYTES)) u_crc (
+        .previous(crc),
+        .data(m_axis_tdata),
+        .count(COUNT_BITS'(WORD_BYTES)),
+        .next(crc_next)
+    );
+
+    assign header_crc    = ~crc;
+    assign is_whole_word = left >= 32'(WORD_BYTES);
+    assign m_axis_tvalid = has_packet && (part != PAYLOAD || has_word);
+    assign m_axis_tlast  = part == PAYLOAD ? left <= 32'(WORD_BYTES)
+                                           : part == HEADER_CRC && bytes == '0;
+    assign is_sent       = m_axis_tvalid && m_axis_tready;
+    always_comb begin
+        m_axis_tdata = payload;
+        m_axis_tkeep = is_whole_word ? '1 : (WORD_BYTES'(1) << left[COUNT_BITS-1:0]) - 1'b1;
+        if (part == HEADER) begin
+            m_axis_tdata = (8 * WORD_BYTES)'(header >> (32'(beat) * 8 * WORD_BYTES));
+            m_axis_tkeep = '1;
+        end else if (part == HEADER_CRC) begin
+            m_axis_tdata = (8 * WORD_BYTES)'(header_crc);
+            m_axis_tkeep = WORD_BYTES'(4'hF);
+        end
+    end
+
+    always_ff @(posedge clk)
+        if (rst) begin
+            part <= HEADER;
+            beat <= '0;
+            left <= '0;
+            crc <= '0;
+        end else begin
+            if (part == HEADER && beat == '0 && !is_sent) crc <= ~stream_crc;
+            else if (is_sent && part == HEADER) crc <= crc_next;
+            else if (is_sent && m_axis_tlast) crc <= ~stream_crc;
+            if (is_sent)
+                case (part)
+                    HEADER: begin
+                        beat <= beat + 1'b1;
+                        if (32'(beat) == HEADER_BEATS - 1) part <= HEADER_CRC;
+                    end
+                    HEADER_CRC: begin
+                        beat <= '0;
+                        left <= bytes;
+                        part <= bytes == '0 ? HEADER : PAYLOAD;
+                    end
+                    default: begin
+                        left <= left - 32'(WORD_BYTES);
+                        if (m_axis_tlast) part <= HEADER;
+                    end
+                endcase
+        end
+endmodule

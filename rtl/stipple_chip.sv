@@ -1,0 +1,335 @@
+// The chip: sequencer, column readout and packets of an image sensor with coded exposure.
+//
+//     schedule_memory -> due_tables -> slot_sequencer -> row_scanner -> row_convert -> ADCs
+//                                            ^                              |
+//                                       row_timer <----- row_transfer <-----+
+//                                                             |
+//            AXI-Stream <- packet_sender <- sample_packer <---+
+//
+// Sizes are parameters, times are inputs that stay the same after reset (docs/rtl.md). After reset
+// the tables are filled; then slot 0 begins. The ADCs present the DN of row adc_row in the clock of
+// convert_end, those of column c in bits c x BIT_DEPTH up. The chip does not wait for its stream:
+// `fault` tells that a queue was full, or that the times cannot be run, and stays.
+module stipple_chip #(
+    parameter int ROWS = 16,
+    parameter int COLS = 16,
+    parameter int CHANNELS = 4,         // divides COLS
+    parameter int COLUMNS_PER_ADC = 1,  // divides COLS
+    parameter int GROUP_ROWS = 1,       // 1 x 1: each channel skips columns that are not due
+    parameter int GROUP_COLS = 1,
+    parameter int TILE_ROWS = 16,
+    parameter int TILE_COLS = 16,
+    parameter int PIXEL_BITS = 1,  // of the schedule memory
+    parameter int DEPTH = 16,      // slots of the schedule memory
+    parameter int BIT_DEPTH = 10,
+    parameter int DARK_ROWS = 2,   // max, at least 1
+    parameter int WORD_BYTES = 8,  // of the stream; 8 WORD_BYTES >= CHANNELS x BIT_DEPTH
+    parameter int WORDS = 1024,    // of packets that wait
+    parameter int PACKETS = 16,
+    parameter int SETTLES = 16,    // settling times
+    parameter int TABLE = 16,      // row times of a table
+    parameter IMAGE = "",
+    // Of ports:
+    parameter int SLOT_BITS = $clog2(2 * DEPTH),
+    parameter int TIMERS = 4,
+    parameter int PLACE_BITS = $clog2(ROWS + DARK_ROWS + 1)
+) (
+    input  logic clk,
+    input  logic rst,
+
+    input  logic [15:0]  rows,    // of the window
+    input  logic [15:0]  cols,
+    input  logic [SLOT_BITS-1:0] period,  // slots, at most DEPTH
+    input  logic         is_sequential,  // law of the row time: neither of the two: overlapped
+    input  logic         is_full_width,
+    input  logic         exposes_while_reading,
+    input  logic [31:0]  slot_clocks,    // of a slot, at least 1
+    input  logic [31:0]  budget_clocks,  // a longer slot is an overrun; 0: none is
+    input  logic [31:0]  rot_clocks,
+    input  logic [31:0]  skip_row_clocks,
+    input  logic [32*SETTLES-1:0] settle_clocks,  // rising; unused ones equal the last
+    input  logic [31:0]  settle_margin,  // two's complement
+    input  logic [31:0]  adc_clocks,
+    input  logic         adc_skip,
+    input  logic [31:0]  blanking_clocks,
+    input  logic [31:0]  clocks_per_column,  // at least 1
+    input  logic [31:0]  io_clocks,
+    input  logic [63:0]  link_bits,  // of a column of all channels, in units of ...
+    input  logic [63:0]  link_rate,  // ... the bits that the link sends in a clock
+    input  logic         has_table,
+    input  logic [32*TABLE-1:0] table_cols,  // rising; unused ones equal the last
+    input  logic [32*TABLE-1:0] table_clocks,
+    input  logic [PLACE_BITS-1:0] dark_rows,
+    input  logic [31:0]  overhead_clocks,
+    input  logic [15:0]  overhead_rows,
+    input  logic [31:0]  full_row_clocks,  // of an overhead row
+    input  logic [31:0]  stream_crc,       // header CRC of the file
+
+    output logic                         slot_start,
+    output logic                         scan_start,
+    output logic                         select,
+    output logic [PLACE_BITS-1:0]        select_row,  // dark rows first, row r is DARK_ROWS + r
+    output logic                         convert,
+    output logic [PLACE_BITS-1:0]        convert_row,
+    output logic                         convert_end,
+    output logic [PLACE_BITS-1:0]        adc_row,
+    input  logic [COLS*BIT_DEPTH-1:0]    adc_dn,
+    output logic                         transfer,
+    output logic [PLACE_BITS-1:0]        transfer_row,
+    output logic [CHANNELS-1:0]          channel_valid,  // a column begins to leave
+    output logic [CHANNELS*BIT_DEPTH-1:0] channel_dn,
+    output logic                         transfer_end,
+    output logic [TIMERS-1:0]            row_done,
+    output logic [TIMERS*PLACE_BITS-1:0] row_done_row,
+    output logic [4:0]                   fault,
+
+    output logic                    m_axis_tvalid,
+    input  logic                    m_axis_tready,
+    output logic [8*WORD_BYTES-1:0] m_axis_tdata,
+    output logic [WORD_BYTES-1:0]   m_axis_tkeep,
+    output logic                    m_axis_tlast
+);
+    localparam int ADDRESS_BITS = $clog2(DEPTH * TILE_ROWS);
+    localparam int DN_BITS = COLS * BIT_DEPTH;
+    // Rows that wait while a row of full channels is packed, a clock for each of its columns.
+    localparam int ROW_QUEUE = 2 ** $clog2(COLS / CHANNELS + 3);
+
+`ifndef SYNTHESIS
+    initial begin
+        if (COLS % CHANNELS != 0) $fatal(1, "CHANNELS does not divide COLS");
+        if (COLS % COLUMNS_PER_ADC != 0) $fatal(1, "COLUMNS_PER_ADC does not divide COLS");
+        if (8 * WORD_BYTES < CHANNELS * BIT_DEPTH)
+            $fatal(1, "WORD_BYTES is less than a column of all channels");
+        if (32 % WORD_BYTES != 0 || WORD_BYTES < 4) $fatal(1, "WORD_BYTES is none of 4, 8, 16, 32");
+        if (DARK_ROWS < 1) $fatal(1, "DARK_ROWS is 0");
+        if (PIXEL_BITS < 1 || PIXEL_BITS > 3) $fatal(1, "PIXEL_BITS is not 1..3");
+    end
+`endif
+
+    // Which rows and columns are due.
+    logic [ADDRESS_BITS-1:0] image_address;
+    logic [TILE_COLS*PIXEL_BITS-1:0] image_word;
+    logic is_ready;
+    logic [SLOT_BITS-1:0] next_slot, queued_slot, scan_slot, held_scan_slot;
+    logic [ROWS-1:0] next_rows, scan_rows;
+    logic [15:0] scan_least;
+    logic [COLS-1:0] row_due, row_columns, window_columns;
+    logic [PLACE_BITS-1:0] skipped;
+    logic slot_waits, is_dark, next_is_open, after_is_open;
+
+    schedule_memory #(
+        .TILE_ROWS(TILE_ROWS), .TILE_COLS(TILE_COLS), .PIXEL_BITS(PIXEL_BITS), .DEPTH(DEPTH),
+        .IMAGE(IMAGE)
+    ) u_memory (
+        .address(image_address),
+        .word(image_word)
+    );
+    due_tables #(
+        .ROWS(ROWS), .COLS(COLS), .CHANNELS(CHANNELS), .GROUP_ROWS(GROUP_ROWS),
+        .GROUP_COLS(GROUP_COLS), .TILE_ROWS(TILE_ROWS), .TILE_COLS(TILE_COLS),
+        .PIXEL_BITS(PIXEL_BITS), .DEPTH(DEPTH)
+    ) u_tables (
+        .clk, .rst,
+        .period,
+        .rows,
+        .cols,
+        .image_address,
+        .image_word,
+        .is_ready,
+        .next_slot,
+        .next_rows,
+        .next_is_open,
+        .after_is_open,
+        .scan_slot,
+        .scan_rows,
+        .scan_least,
+        .scan_row(16'(select_row) - 16'(DARK_ROWS)),
+        .row_due,
+        .row_columns
+    );
+
+    // Slots, and the queue of those with rows to read.
+    logic is_reading;
+    logic slot_end, ended_has_rows, ended_overrun, slots_overflow;
+    logic [ROWS-1:0] rows_done;
+    logic scan_over;
+
+    slot_sequencer #(.ROWS(ROWS), .SLOT_BITS(SLOT_BITS), .LENGTH_BITS(42)) u_slots (
+        .clk, .rst,
+        .is_ready,
+        .period,
+        .exposes_while_reading,
+        .slot_clocks(42'(slot_clocks)),
+        .budget_clocks(42'(budget_clocks)),
+        .next_rows,
+        .next_is_open,
+        .after_is_open,
+        .rows_done,
+        .is_reading,
+        .next_slot,
+        .slot_start,
+        .slot_end,
+        .ended_has_rows,
+        .ended_overrun
+    );
+    fifo #(.WIDTH(SLOT_BITS), .DEPTH(2 ** $clog2(DEPTH + 2))) u_slot_queue (
+        .clk, .rst,
+        .push(slot_start && next_rows != '0),
+        .item(next_slot),
+        .pop(scan_start),
+        .valid(slot_waits),
+        .head(queued_slot),
+        .overflow(slots_overflow)
+    );
+
+    // The scan, and the settling time of its rows: the longest one that is not above the columns of
+    // its emptiest row.
+    logic [31:0] settle, held_settle, settle_columns;
+    logic [47:0] first_transfer, overhead_row_clocks;
+    logic may_select, may_transfer, is_last;
+
+    assign scan_slot = scan_start ? queued_slot : held_scan_slot;
+    assign settle_columns = 32'(scan_least) + settle_margin;
+    always_comb begin
+        settle = scan_start ? settle_clocks[31:0] : held_settle;
+        for (int i = 1; i < SETTLES; i = i + 1)
+            if (scan_start && $signed(settle_clocks[i*32+:32]) <= $signed(settle_columns))
+                settle = settle_clocks[i*32+:32];
+    end
+    assign overhead_row_clocks = 48'(overhead_rows) * 48'(full_row_clocks);
+    assign first_transfer = 48'(overhead_clocks) + overhead_row_clocks;
+
+    row_scanner #(
+        .ROWS(ROWS), .DARK_ROWS(DARK_ROWS), .WAIT_BITS(48)
+    ) u_scanner (
+        .clk, .rst,
+        .slot_waits,
+        .slot_rows(scan_rows),
+        .dark_rows,
+        .select_wait(first_transfer -
+                     (overhead_rows != '0 && !is_sequential ? 48'(full_row_clocks) : '0)),
+        .transfer_wait(first_transfer),
+        .may_select,
+        .scan_over,
+        .scan_start,
+        .is_reading,
+        .may_transfer,
+        .select,
+        .place(select_row),
+        .skipped,
+        .is_last
+    );
+
+    // The rows of the scan.
+    logic sent_valid, sent_is_last, timers_overflow;
+    logic [COLS-1:0] sent_due;
+    logic [DN_BITS-1:0] sent_dn;
+
+    for (genvar c = 0; c < COLS; c = c + 1) begin : g_window
+        assign window_columns[c] = cols > 16'(c);
+    end
+    assign is_dark = select_row < PLACE_BITS'(DARK_ROWS);
+
+    row_readout #(
+        .ROWS(ROWS), .COLS(COLS), .CHANNELS(CHANNELS), .COLUMNS_PER_ADC(COLUMNS_PER_ADC),
+        .BIT_DEPTH(BIT_DEPTH), .DARK_ROWS(DARK_ROWS), .TABLE(TABLE),
+        .TIMERS(TIMERS)
+    ) u_readout (
+        .clk, .rst, .is_sequential, .is_full_width, .rot_clocks, .skip_row_clocks,
+        .settle_clocks(settle), .adc_clocks, .adc_skip, .blanking_clocks, .clocks_per_column,
+        .io_clocks, .link_bits, .link_rate, .has_table, .table_cols, .table_clocks,
+        .select, .select_row, .skipped, .is_last,
+        .row_columns(is_dark ? window_columns : row_columns),
+        .row_due(is_dark ? '0 : row_due),
+        .may_transfer, .may_select,
+        .convert, .convert_row, .convert_end, .adc_row, .adc_dn, .transfer, .transfer_row, .channel_valid,
+        .channel_dn, .transfer_end, .row_done, .row_done_row, .rows_done, .scan_over,
+        .sent_valid, .sent_is_last, .sent_due, .sent_dn, .timers_overflow
+    );
+
+    // Packets.
+    logic packed_row_valid, packed_row_pop, packed_row_is_last, rows_overflow;
+    logic [COLS-1:0] packed_row_due;
+    logic [DN_BITS-1:0] packed_row_dn;
+    logic ended_valid, ended_pop, has_rows, was_overrun, ended_overflow;
+    logic word_valid, packet_valid, packet_overrun, sender_overflow;
+    logic [8*WORD_BYTES-1:0] word;
+    logic [52:0] packet_slot;
+    logic [31:0] packet_samples, packet_bytes, packet_crc;
+
+    fifo #(.WIDTH(1 + COLS + DN_BITS), .DEPTH(ROW_QUEUE)) u_row_queue (
+        .clk, .rst,
+        .push(sent_valid),
+        .item({sent_is_last, sent_due, sent_dn}),
+        .pop(packed_row_pop),
+        .valid(packed_row_valid),
+        .head({packed_row_is_last, packed_row_due, packed_row_dn}),
+        .overflow(rows_overflow)
+    );
+    fifo #(.WIDTH(2), .DEPTH(2 ** $clog2(DEPTH + 2))) u_ended_slots (
+        .clk, .rst,
+        .push(slot_end),
+        .item({ended_has_rows, ended_overrun}),
+        .pop(ended_pop),
+        .valid(ended_valid),
+        .head({has_rows, was_overrun}),
+        .overflow(ended_overflow)
+    );
+    sample_packer #(
+        .COLS(COLS), .BIT_DEPTH(BIT_DEPTH), .PACK(CHANNELS), .WORD_BYTES(WORD_BYTES)
+    ) u_packer (
+        .clk, .rst,
+        .row_valid(packed_row_valid),
+        .row_due(packed_row_due),
+        .row_dn(packed_row_dn),
+        .row_is_last(packed_row_is_last),
+        .row_pop(packed_row_pop),
+        .slot_valid(ended_valid),
+        .slot_has_rows(has_rows),
+        .slot_overrun(was_overrun),
+        .slot_pop(ended_pop),
+        .word_valid,
+        .word,
+        .packet_valid,
+        .packet_overrun,
+        .packet_slot,
+        .packet_samples,
+        .packet_bytes,
+        .packet_crc
+    );
+    packet_sender #(.WORD_BYTES(WORD_BYTES), .WORDS(WORDS), .PACKETS(PACKETS)) u_sender (
+        .clk, .rst,
+        .stream_crc,
+        .rows,
+        .word_valid,
+        .word,
+        .packet_valid,
+        .packet_overrun,
+        .packet_slot,
+        .packet_samples,
+        .packet_bytes,
+        .packet_crc,
+        .overflow(sender_overflow),
+        .m_axis_tvalid,
+        .m_axis_tready,
+        .m_axis_tdata,
+        .m_axis_tkeep,
+        .m_axis_tlast
+    );
+
+    logic has_no_time;  // a row takes no clock from its selection to its DN
+    assign has_no_time = select && rot_clocks == '0 && settle == '0 && adc_clocks == '0;
+
+    always_ff @(posedge clk)
+        if (rst) begin
+            fault <= '0;
+        end else begin
+            fault <= fault | {has_no_time, slots_overflow || ended_overflow, timers_overflow,
+                              rows_overflow, sender_overflow};
+        end
+
+    always_ff @(posedge clk) begin
+        held_scan_slot <= scan_slot;
+        held_settle <= settle;
+    end
+endmodule

@@ -1,0 +1,44 @@
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "core/exposure_schedule.h"
+#include "stream/sample_packet.h"
+#include "tests/rtl/chip_run.h"
+
+namespace stipple {
+
+/// The strobes of the chip in the first slots, by ReadoutCost. With kStretch only.
+[[nodiscard]] ChipEvents expected_events(ReadoutCost& cost, int slots);
+
+/// Slots among the first ones whose scans read rows.
+[[nodiscard]] std::vector<int> scanned_slots(ReadoutCost& cost, int slots);
+
+/// `events` without those after the last expected one of each kind, in the order of clock and row.
+[[nodiscard]] ChipEvents cut_to(const ChipEvents& expected, ChipEvents events);
+
+/// Differences in words, one for each kind of event; empty if there are none.
+[[nodiscard]] std::string differences(const ChipEvents& expected, const ChipEvents& given);
+
+/// The bytes of a .stipple file: header, packets of samples, index and end marker.
+struct StreamBytes {
+    std::vector<std::uint8_t> header, packets, end;
+    std::uint32_t header_crc = 0;
+};
+[[nodiscard]] StreamBytes read_stream_bytes(const std::filesystem::path& file);
+
+/// The DN of all columns of a row from a packet of the whole slot; columns that are not due have 0.
+[[nodiscard]] std::vector<std::uint16_t> columns_of(const SamplePacket& packet,
+                                                    const ExposureSchedule& schedule,
+                                                    FrameShape shape, int row);
+
+/// The program of `schedule` for a chip whose tile and bits per pixel may be larger: the tile is
+/// repeated, and what the chip has more bits for is said. \throws InputError if the tile does not
+/// divide that of the chip or there are too many slots or bits.
+void write_image(const ExposureSchedule& schedule, const ChipSize& size,
+                 const std::filesystem::path& file);
+
+}  // namespace stipple

@@ -1,0 +1,245 @@
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <string>
+#include <vector>
+
+#include "core/flux_video.h"
+#include "core/index.h"
+#include "readout/program/sequencer_program.h"
+#include "readout/sensor_file.h"
+#include "readout/stream_recorder.h"
+#include "stream/stream_writer.h"
+#include "tests/readout/gapped_schedule.h"
+#include "tests/readout/timing/random_readout.h"
+#include "tests/rtl/expected_run.h"
+#include "tests/support/temporary_folder.h"
+
+namespace stipple {
+namespace {
+
+const ChipModel& model(const std::string& name) {
+    return *std::ranges::find(chip_models(), name, &ChipModel::name);
+}
+
+/// The timing of a sensor on the structure of a chip.
+ReadoutTiming fitted(ReadoutTiming timing, const ChipSize& size) {
+    timing.rows = size.rows;
+    timing.cols = size.cols;
+    timing.addressing = {.kind = size.group_rows * size.group_cols > 1
+                                     ? ColumnAddressing::Kind::kGroup
+                                     : ColumnAddressing::Kind::kSkipChannel,
+                         .channels = size.channels,
+                         .group_cols = size.group_cols,
+                         .group_rows = size.group_rows};
+    timing.columns_per_adc = size.columns_per_adc;
+    return timing;
+}
+
+/// A run of the model with the file that it writes, and the same on the chip.
+struct Comparison {
+    const ChipModel& model;
+    ReadoutTiming timing;
+    const ExposureSchedule& schedule;
+    FrameShape window;
+    std::int64_t budget_clocks;
+    int slots;
+
+    /// Differences in words; `packets` are those of `file`.
+    [[nodiscard]] std::string differences_from(const std::vector<SamplePacket>& packets,
+                                               const std::filesystem::path& file,
+                                               const std::filesystem::path& image,
+                                               std::uint32_t seed) const {
+        const StreamBytes bytes = read_stream_bytes(file);
+        ReadoutCost cost(timing, schedule, window, {budget_clocks});
+        const ChipEvents expected = expected_events(cost, slots);
+        const std::vector<int> scanned = scanned_slots(cost, slots);
+        const ColumnDn dn = [&](int scan, int row) {
+            if (index(scan) >= scanned.size()) return std::vector<std::uint16_t>();
+            return columns_of(packets[index(scanned[index(scan)])], schedule, window, row);
+        };
+        const ChipProgram program{.timing = timing,
+                                  .window = window,
+                                  .budget_clocks = budget_clocks,
+                                  .period_slots = compile_schedule(schedule).period_slots,
+                                  .stream_crc = bytes.header_crc,
+                                  .image = image,
+                                  .slots = slots,
+                                  .max_clocks = 2 * cost.clocks() + 100'000,
+                                  .seed = seed};
+        const ChipRun run = model.run(model.size, program, dn);
+        std::string text = differences(expected, cut_to(expected, run.events));
+        if (run.fault != 0) text += fmt::format("fault {:05b}\n", run.fault);
+        if (run.bytes != bytes.packets) {
+            const auto [a, b] = std::ranges::mismatch(run.bytes, bytes.packets);
+            text += fmt::format("byte {} of {}, chip {}\n", b - bytes.packets.begin(),
+                                bytes.packets.size(), run.bytes.size());
+        }
+        return text;
+    }
+};
+
+/// Packets of a run with DN that are drawn, and their file.
+std::vector<SamplePacket> draw_packets(const Comparison& it, const std::filesystem::path& file,
+                                       Draw& draw) {
+    StreamWriter writer(file, {.shape = it.window,
+                               .calibration = {.bit_depth = it.model.size.bit_depth},
+                               .schedule = it.schedule,
+                               .schedule_source = {},
+                               .schedule_name = "",
+                               .provenance = ""});
+    ReadoutCost cost(it.timing, it.schedule, it.window, {it.budget_clocks});
+    std::vector<SamplePacket> packets;
+    for (int slot = 0; slot < it.slots; ++slot) {
+        const std::uint8_t flags = cost.add_next().overrun ? SamplePacket::kOverrun : 0;
+        SamplePacket packet{slot, 0, it.window.rows, flags, {}};
+        packet.dn.resize(count_due(it.schedule, slot, 0, it.window.rows, it.window.cols));
+        for (std::uint16_t& dn : packet.dn)
+            dn = static_cast<std::uint16_t>(draw(0, (1 << it.model.size.bit_depth) - 1));
+        writer.write(packet);
+        packets.push_back(std::move(packet));
+    }
+    writer.finish();
+    return packets;
+}
+
+/// Times of a random sensor that a chip of this size can have, and a window of it.
+Comparison random_comparison(const ChipModel& chip, const ExposureSchedule& schedule, Draw& draw) {
+    ReadoutTiming timing = fitted(random_timing(draw), chip.size);
+    timing.dark_rows = std::min(timing.dark_rows, chip.size.dark_rows);
+    timing.bits_per_sample = chip.size.bit_depth;
+    timing.exposes_while_reading = draw(0, 3) > 0;
+    if (timing.rot_clocks == 0 && timing.adc_clocks == 0 &&
+        (timing.settle_clocks.empty() || timing.settle_clocks.front() == 0))
+        timing.rot_clocks = 1;
+    const int all = chip.size.cols / chip.size.channels;
+    if (!timing.row_table_cols.empty()) {
+        timing.clocks_per_column = 1;
+        timing.row_table_cols = {chip.size.channels, 2 * chip.size.channels, chip.size.cols};
+        timing.row_table_clocks = {1, draw(2, 4), draw(all, all + 3)};
+        if (all <= 2) timing.row_table_cols = timing.row_table_clocks = {};
+    }
+    const FrameShape window{draw(1, chip.size.rows), draw(1, chip.size.cols), 1};
+    Comparison it{chip, timing, schedule, window, 0, draw(10, 40)};
+    ReadoutCost cost(timing, schedule, window, {});
+    for (int slot = 0; slot < it.slots; ++slot) cost.add_next();
+    if (draw(0, 3) > 0)
+        it.budget_clocks =
+            draw(1, static_cast<int>(3 * cost.totals().readout_clocks / it.slots) + 9);
+    return it;
+}
+
+/// A schedule for a chip: as gapped as its memory can say.
+ExposureSchedule schedule_for(const ChipSize& size, std::uint32_t seed, Draw& draw) {
+    const int rows = draw(0, 1) == 0 ? size.tile_rows : 4;
+    const int cols = draw(0, 1) == 0 ? size.tile_cols : 4;
+    if (size.pixel_bits > 1 && draw(0, 2) == 0) return random_frames(draw);
+    if (size.pixel_bits > 2 && draw(0, 1) == 0)
+        return interleaved_schedule(rows, cols, draw(1, 5), seed);
+    if (size.pixel_bits > 1 && draw(0, 1) == 0)
+        return gapped_schedule(rows, cols, draw(13, size.depth), seed);
+    return random_schedule(rows, cols, std::vector{1, draw(2, 3), draw(4, 8)}, seed);
+}
+
+/// The end of a row's time is before that of an earlier row: its ADCs convert fewer columns. The
+/// timers of the chip then are not the model's.
+bool rows_end_out_of_order(const Comparison& it) {
+    ReadoutCost cost(it.timing, it.schedule, it.window, {});
+    for (int slot = 0; slot < it.slots; ++slot) {
+        const SlotCost slot_cost = cost.add_next();
+        if (!std::ranges::is_sorted(cost.times(slot, slot_cost).rows, {}, &RowTimes::frame_end))
+            return true;
+    }
+    return false;
+}
+
+TEST(RtlTest, RunsRandomSensorsAndSchedulesAsTheModelClockByClock) {
+    const TemporaryFolder folder;
+    constexpr std::uint32_t kRuns = 200;
+    int runs = 0, refused = 0, overruns = 0, laws[3] = {};
+    for (std::uint32_t seed = 0; runs < static_cast<int>(kRuns); ++seed) {
+        Draw draw(seed);
+        const ChipModel& chip = chip_models()[seed % chip_models().size()];
+        const ExposureSchedule schedule = schedule_for(chip.size, seed, draw);
+        const Comparison it = random_comparison(chip, schedule, draw);
+        if (rows_end_out_of_order(it)) {
+            ++refused;
+            continue;
+        }
+        write_image(schedule, chip.size, folder / "a.mem");
+        const auto packets = draw_packets(it, folder / "a.stipple", draw);
+        ASSERT_EQ(it.differences_from(packets, folder / "a.stipple", folder / "a.mem", seed), "")
+            << "seed " << seed << ", chip " << chip.name;
+        overruns += static_cast<int>(std::ranges::count_if(packets, &SamplePacket::flags));
+        ++laws[static_cast<int>(it.timing.row_timing)];
+        ++runs;
+    }
+    EXPECT_LT(refused, runs / 4);
+    EXPECT_GT(overruns, runs);
+    for (const int law : laws) EXPECT_GT(law, runs / 5);
+}
+
+/// Light that differs from pixel to pixel and from slot to slot.
+FluxVideo light_of(FrameShape shape, int slots, Draw& draw) {
+    FluxVideo light(slots, shape);
+    for (float& value : light.data()) value = static_cast<float>(draw(0, 1000)) / 100;
+    return light;
+}
+
+/// The emulated sensor records a file; the chip runs the same schedule with its samples.
+void expect_the_emulator_s_file(const ChipModel& chip, const SensorChoice& choice) {
+    SCOPED_TRACE(choice.sensor + ", " + choice.schedule);
+    const TemporaryFolder folder;
+    Draw draw(1);
+    const FrameShape shape{chip.size.rows, chip.size.cols, 1};
+    SensorSetup setup = set_up_sensor(choice, shape);
+    setup.params.bit_depth = chip.size.bit_depth;
+    setup.timing = fitted(*setup.timing, chip.size);
+    setup.timing->bits_per_sample = chip.size.bit_depth;
+    setup.timing->code_load_clocks = 0;  // of a larger array
+    const Comparison it{chip,
+                        *setup.timing,
+                        setup.schedule.schedule,
+                        shape,
+                        slot_clocks(*setup.timing, setup.params.slot_us),
+                        2 * setup.schedule.schedule.period_slots() + 3};
+    const FluxVideo light = light_of(shape, it.slots, draw);
+    StreamRecorder recorder(folder / "a.stipple", setup);
+    std::vector<SamplePacket> packets;
+    for (int slot = 0; slot < it.slots; ++slot)
+        packets.push_back(recorder.expose(light.frame(slot)).front());
+    recorder.finish();
+    write_image(it.schedule, chip.size, folder / "a.mem");
+    EXPECT_EQ(it.differences_from(packets, folder / "a.stipple", folder / "a.mem", 1), "");
+}
+
+TEST(RtlTest, GivesTheFileOfTheEmulatorForTiledOnEachLaw) {
+    for (const char* sensor : {"lux1310", "imx273", "vita", "cmv4000"})
+        for (const char* slot : {"slot_us=2", "slot_us=20"})
+            expect_the_emulator_s_file(model("paper"),
+                                       {.sensor = sensor, .schedule = "tiled", .settings = {slot}});
+}
+
+TEST(RtlTest, GivesTheFileOfTheEmulatorForTheSchedulesOfTheCatalogue) {
+    for (const char* schedule :
+         {"alternating", "coded_rolling_shutter_exposure", "coded_rolling_shutter_staggered", "dol",
+          "flexible_voxels", "full1x", "full4x", "multi_phase_2x2", "nd_mosaic",
+          "spatially_varying_exposure"})
+        expect_the_emulator_s_file(
+            model("small"), {.sensor = "lux1310", .schedule = schedule, .settings = {"slot_us=5"}});
+    for (const char* schedule :
+         {"tiled", "single_bump", "random_subset", "pixel_flutter", "two_bucket"})
+        expect_the_emulator_s_file(model("group"),
+                                   {.sensor = "lux1310",
+                                    .schedule = schedule,
+                                    .settings = {"slot_us=5", "charge_stores=2"},
+                                    .schedule_settings = {"tile_rows=12", "tile_cols=6"}});
+    expect_the_emulator_s_file(model("one"), {.sensor = "lux1310",
+                                              .schedule = "rolling",
+                                              .settings = {"slot_us=5"},
+                                              .schedule_settings = {"rows_per_slot=1"}});
+}
+
+}  // namespace
+}  // namespace stipple
