@@ -125,7 +125,8 @@ FfmpegPtr<AVCodecContext> open_encoder(FrameShape shape, const VideoCoding& codi
     encoder->pix_fmt = coding.curve == VideoCurve::kSdr ? AV_PIX_FMT_YUV420P : AV_PIX_FMT_YUV420P10;
     encoder->framerate = av_d2q(coding.frames_hz, kMaxRateTerm);
     encoder->time_base = av_inv_q(encoder->framerate);
-    encoder->thread_count = kThreads;
+    // On some processors libx264 r3095 gives other bits from run to run if it has several threads.
+    encoder->thread_count = coding.curve == VideoCurve::kSdr ? 1 : kThreads;
     declare_colours(*encoder, coding.curve);
     if (global_header) encoder->flags |= AV_CODEC_FLAG_GLOBAL_HEADER;
     AVDictionary* options = options_of(coding);

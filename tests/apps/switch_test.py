@@ -81,7 +81,6 @@ class SwitchTest(ProgramTest):
     def test_commands_of_one_schedule_refuse(self):
         self.emulate("30:schedule=tiled")
         for command in (("report", "clip.stipple", "-o", "page.html"),
-                        ("view", "clip.stipple"),
                         ("calibrate", "-o", "chip.npz", "--scene", "clip.stipple", "--prnu", "0.01"),
                         ("decode", "clip.stipple", "-o", "x.npy", "--check-schedule=fix")):
             done = self.run_program(*command)
@@ -109,7 +108,7 @@ class SwitchTest(ProgramTest):
         for text, code, parts in (
                 ("schedule=tiled", USAGE, ["is a slot from 1 on and what changes there"]),
                 ("0:schedule=tiled", USAGE, ["is a slot from 1 on"]),
-                ("5:shedule=tiled", USAGE, ["shedule=tiled is none of schedule=NAME"]),
+                ("5:shedule=tiled", USAGE, ["shedule=tiled: is none of schedule=NAME"]),
                 ("5:schedule=nosuch", INPUT, ["nosuch"]),
                 ("5:sensor.bit_depth=4", INPUT, ["switch at slot 5", "may change"]),
                 ("5:schedule=two_bucket", INPUT, ["two_bucket"])):

@@ -19,7 +19,7 @@ class ViewTest(unittest.TestCase):
     def test_a_stream_and_arrays_are_shown(self):
         stream = stipple.emulate(self.video)
         with stipple.view(stream, self.video[:20], truth=self.video, method="fast") as view:
-            self.assertEqual(json.loads(asked(view, "status")), {"slots": 24, "first": 0, "complete": True})
+            self.assertEqual(json.loads(asked(view, "status")), {"slots": 24, "first": 0, "complete": True, "switched": [0]})
             codes = np.frombuffer(asked(view, "plane/v1-7"), "<u2")
             light = 2.0 ** ((codes.astype(float) - 1) / 128 - 14)
             np.testing.assert_allclose(light, self.video[7].ravel(), rtol=0.0028)
