@@ -45,9 +45,10 @@ void set_registers(Chip& chip, const ChipProgram& program) {
     chip.is_sequential = timing.row_timing == RowTiming::kSequential;
     chip.is_full_width = timing.row_timing == RowTiming::kFullWidth;
     chip.exposes_while_reading = timing.exposes_while_reading;
+    chip.drops = program.budget.policy == OverrunPolicy::kDrop;
     chip.slot_clocks = whole(std::max(
-        {program.budget_clocks, std::int64_t{1}, code_load_clocks(timing, program.window.rows)}));
-    chip.budget_clocks = whole(program.budget_clocks);
+        {program.budget.clocks, std::int64_t{1}, code_load_clocks(timing, program.window.rows)}));
+    chip.budget_clocks = whole(program.budget.clocks);
     chip.rot_clocks = whole(timing.rot_clocks);
     chip.skip_row_clocks = whole(timing.skip_row_clocks);
     constexpr std::size_t kSettles = sizeof chip.settle_clocks / 4;
@@ -96,7 +97,9 @@ class VerilatedRun {
         chip_->rst = 1;
         for (int i = 0; i < 2; ++i) clock(false);
         chip_->rst = 0;
-        while (run_.packets < program_.slots && run_.clocks < program_.max_clocks) clock(true);
+        while ((run_.packets < program_.packets || run_.clocks < program_.min_clocks) &&
+               run_.clocks < program_.max_clocks)
+            clock(true);
         run_.fault = chip_->fault;
         chip_->final();
         return std::move(run_);
@@ -108,7 +111,7 @@ class VerilatedRun {
         chip_->m_axis_tready = engine_() % 4 != 0;
         show({});
         chip_->eval();
-        if (watch && chip_->convert_end) {
+        if (chip_->convert_end && !run_.events.scan_start.empty()) {
             show(dn_(static_cast<int>(run_.events.scan_start.size()) - 1, row(chip_->adc_row)));
             chip_->eval();
         }
@@ -152,6 +155,7 @@ class VerilatedRun {
     }
     void take_beat() {
         if (!chip_->m_axis_tvalid || !chip_->m_axis_tready) return;
+        if (run_.packets == program_.packets) return;
         for (unsigned i = 0; i < static_cast<unsigned>(size_.word_bytes); ++i)
             if ((chip_->m_axis_tkeep >> i & 1U) != 0)
                 run_.bytes.push_back(
