@@ -34,7 +34,7 @@ module due_tables #(
     output logic                            is_ready,
 
     input  logic [SLOT_BITS-1:0]            next_slot,
-    output logic [ROWS-1:0]                 next_rows,  // with due pixels, or others of their groups
+    output logic [ROWS-1:0]                 next_rows,  // with due pixels, or of their groups
     output logic                            next_is_open,   // a pixel of the tile is open in it
     output logic                            after_is_open,  // ... in the slot after it
     input  logic [SLOT_BITS-1:0]            scan_slot,
@@ -79,7 +79,8 @@ module due_tables #(
     logic [TILE_COLS-1:0] is_read, is_open, in_second, is_used, due;
     logic [2*TILE_COLS-1:0] early, early_next;
     assign image_slot = in_period(slot);
-    assign image_address = ADDRESS_BITS'(image_slot) * ADDRESS_BITS'(TILE_ROWS) + ADDRESS_BITS'(row);
+    assign image_address = ADDRESS_BITS'(image_slot) * ADDRESS_BITS'(TILE_ROWS) +
+                           ADDRESS_BITS'(row);
     assign early = step == WARM_UP && slot == '0 ? '0 : under_way[TILE_BITS'(row)];
     for (genvar c = 0; c < TILE_COLS; c = c + 1) begin : g_pixel
         logic is_early;

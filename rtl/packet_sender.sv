@@ -3,8 +3,8 @@
 // Words of payloads and then the size of their packet are pushed into queues of WORDS and PACKETS;
 // a packet is sent once it is complete. Its header takes 32 / WORD_BYTES beats and one for its CRC,
 // which has 4 bytes; its payload a beat for each word, the last one with the bytes that are left.
-// tkeep tells the bytes of a beat, tlast the last beat of a packet. `overflow` is a clock in which a
-// queue was full: data are lost, as the chip cannot wait.
+// tkeep tells the bytes of a beat, tlast the last beat of a packet. `overflow` is a clock in which
+// a queue was full: data are lost, as the chip cannot wait.
 //
 // `stream_crc` is the header CRC of the file, from which the CRC of packets continue.
 module packet_sender #(
@@ -15,11 +15,12 @@ module packet_sender #(
     input  logic                    clk,
     input  logic                    rst,
     input  logic [31:0]             stream_crc,
-    input  logic [15:0]             rows,
     input  logic                    word_valid,
     input  logic [8*WORD_BYTES-1:0] word,
     input  logic                    packet_valid,
-    input  logic                    packet_overrun,
+    input  logic [1:0]              packet_flags,  // dropped, overrun
+    input  logic [15:0]             packet_first_row,
+    input  logic [15:0]             packet_rows,
     input  logic [52:0]             packet_slot,
     input  logic [31:0]             packet_samples,
     input  logic [31:0]             packet_bytes,
@@ -42,7 +43,8 @@ module packet_sender #(
     logic [255:0] header;
     logic is_sent, is_whole_word, words_overflow, packets_overflow;
 
-    logic overrun;
+    logic [1:0] flags;
+    logic [15:0] first_row, rows;
     logic [52:0] slot;
     logic [31:0] samples, bytes, payload_crc;
     logic has_packet, has_word;
@@ -57,19 +59,20 @@ module packet_sender #(
         .head(payload),
         .overflow(words_overflow)
     );
-    fifo #(.WIDTH(150), .DEPTH(PACKETS)) u_packets (
+    fifo #(.WIDTH(183), .DEPTH(PACKETS)) u_packets (
         .clk, .rst,
         .push(packet_valid),
-        .item({packet_overrun, packet_slot, packet_samples, packet_bytes, packet_crc}),
+        .item({packet_flags, packet_first_row, packet_rows, packet_slot, packet_samples,
+               packet_bytes, packet_crc}),
         .pop(is_sent && m_axis_tlast),
         .valid(has_packet),
-        .head({overrun, slot, samples, bytes, payload_crc}),
+        .head({flags, first_row, rows, slot, samples, bytes, payload_crc}),
         .overflow(packets_overflow)
     );
     assign overflow = words_overflow || packets_overflow;
 
     // The first byte is the lowest.
-    assign header = {payload_crc, bytes, samples, rows, 16'd0, 11'd0, slot, 16'd0, 7'd0, overrun,
+    assign header = {payload_crc, bytes, samples, rows, first_row, 11'd0, slot, 16'd0, 6'd0, flags,
                      8'd1, 32'h4B50_53C5};
 
     crc32c #(.BYTES(WORD_BYTES)) u_crc (

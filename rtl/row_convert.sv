@@ -6,7 +6,8 @@
 //     row_ready    `rest_clocks` later: the row may be transferred, the next one selected
 //
 // Each of them is a strobe of one clock. Without clocks between them they coincide, except that a
-// row takes at least a clock from `select` to `convert_end`, even without skipped rows. Precondition of `select`: is_free.
+// row takes at least a clock from `select` to `convert_end`, even without skipped rows.
+// Precondition of `select`: is_free.
 // ADC c mod (COLS / COLUMNS_PER_ADC) converts column c, its columns one after another.
 module row_convert #(
     parameter int COLS = 8,

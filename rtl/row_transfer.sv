@@ -91,7 +91,8 @@ module row_transfer #(
     assign is_sent = is_sending && channels_are_over &&
                      (has_table ? held_age >= table_time
                                 : held_rate >= held_bits &&
-                                  (!full_width || held_age >= CLOCK_BITS'(ALL) * clocks_per_column));
+                                  (!full_width ||
+                                   held_age >= CLOCK_BITS'(ALL) * clocks_per_column));
     assign transfer_end = is_sent && sent_io == (has_table ? '0 : io_clocks);
     assign link_free    = blanking_clocks == '0 ? transfer_end
                                                 : is_resting && rested == blanking_clocks;

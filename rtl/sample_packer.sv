@@ -5,7 +5,8 @@
 // least one. What is known of each ended slot comes by `slot_valid` and leaves by `slot_pop`: a
 // packet is complete when its slot has ended, which tells whether it was an overrun, and the last
 // row of its scan is packed. Words of the payload leave by `word_valid`; then, in the clock of its
-// last word if it has a part of one, `packet_valid` tells the size of the packet.
+// last word if it has a part of one, `packet_valid` tells the size of the packet. Rows that were
+// dropped are a packet without samples.
 module sample_packer #(
     parameter int COLS = 8,
     parameter int BIT_DEPTH = 10,
@@ -18,15 +19,24 @@ module sample_packer #(
     input  logic [COLS-1:0]           row_due,
     input  logic [COLS*BIT_DEPTH-1:0] row_dn,
     input  logic                      row_is_last,  // of its scan
+    input  logic [15:0]               row_number,   // of its slot
+    input  logic [15:0]               row_end,      // rows from here on are dropped
     output logic                      row_pop,
     input  logic                      slot_valid,
     input  logic                      slot_has_rows,
     input  logic                      slot_overrun,
+    input  logic [15:0]               slot_first_row,  // with due pixels
+    input  logic [15:0]               undecided,    // the oldest slot that may still be scanned
+    input  logic                      is_reading,   // the rows of slot scan_number
+    input  logic [15:0]               scan_number,
+    input  logic [15:0]               rows,
     output logic                      slot_pop,
     output logic                      word_valid,
     output logic [8*WORD_BYTES-1:0]   word,
     output logic                      packet_valid,
-    output logic                      packet_overrun,
+    output logic [1:0]                packet_flags,  // dropped, overrun
+    output logic [15:0]               packet_first_row,
+    output logic [15:0]               packet_rows,
     output logic [52:0]               packet_slot,
     output logic [31:0]               packet_samples,
     output logic [31:0]               packet_bytes,
@@ -37,6 +47,9 @@ module sample_packer #(
     localparam int COUNT_BITS = $clog2(WORD_BYTES + 1);
 
     logic is_packed;  // the last row of the scan
+    logic is_ours, is_dropped, is_cut;  // rows of this slot; all of them; the last ones
+    logic drops_rest;  // the packet of the dropped last rows is next
+    logic [15:0] end_row, cut_row;
     logic in_row;     // a part of it is packed
     logic [COLS-1:0] held_due, due, rest;
     logic [2*WORD_BITS-1:0] bits, filled_bits;
@@ -47,7 +60,8 @@ module sample_packer #(
     logic [COUNT_BITS-1:0] part_bytes;
 
     // Up to PACK due pixels of the row.
-    assign packs = row_valid && !is_packed && !(slot_valid && !slot_has_rows);
+    assign is_ours = row_valid && row_number == slot[15:0];
+    assign packs = is_ours && !is_packed;
     assign due   = in_row ? held_due : row_due;
     for (genvar i = 0; i < PACK; i = i + 1) begin : g_sample
         logic [COLS-1:0] before_it, first, after_it;
@@ -86,9 +100,15 @@ module sample_packer #(
     assign packed_samples = g_sample[PACK-1].count_after;
     assign row_pop        = packs && rest == '0;
 
-    // The end of a packet: a slot without rows, or one that has ended and is packed.
-    assign packet_valid = slot_valid && (is_packed || !slot_has_rows);
-    assign slot_pop     = packet_valid;
+    // The end of a packet: of a slot without rows, of one that has ended and is packed, or of one
+    // that was not scanned; and of the dropped rows of the last two.
+    assign is_dropped = slot_has_rows && !is_packed && !is_ours && slot[15:0] != undecided &&
+                        !(is_reading && scan_number == slot[15:0]);
+    assign packet_valid = slot_valid && (is_packed || !slot_has_rows || is_dropped);
+    assign cut_row      = is_packed ? end_row : slot_first_row;
+    assign is_cut       = (is_packed || is_dropped) && !drops_rest && cut_row != rows &&
+                          cut_row != '0;
+    assign slot_pop     = packet_valid && !is_cut;
     assign is_full      = filled >= FILL_BITS'(WORD_BITS);
     assign has_part     = packet_valid && fill != '0;
     assign part_bytes   = COUNT_BITS'((fill + FILL_BITS'(7)) >> 3);
@@ -102,7 +122,10 @@ module sample_packer #(
         .next(crc_next)
     );
     assign end_crc        = has_part ? crc_next : crc;
-    assign packet_overrun = slot_overrun;
+    assign packet_flags     = is_cut ? 2'b00 : drops_rest || is_dropped ? 2'b10
+                                                                        : {1'b0, slot_overrun};
+    assign packet_first_row = drops_rest ? cut_row : '0;
+    assign packet_rows      = is_cut ? cut_row : rows - packet_first_row;
     assign packet_slot    = slot;
     assign packet_samples = samples;
     assign packet_bytes   = words * WORD_BYTES + (has_part ? 32'(part_bytes) : '0);
@@ -112,11 +135,13 @@ module sample_packer #(
         if (rst) begin
             is_packed <= 1'b0;
             in_row <= 1'b0;
+            drops_rest <= 1'b0;
             slot <= '0;
         end else begin
-            is_packed <= !packet_valid && (is_packed || (row_pop && row_is_last));
+            is_packed <= !slot_pop && (is_packed || (row_pop && row_is_last));
+            drops_rest <= packet_valid && is_cut;
             in_row <= packs && rest != '0;
-            if (packet_valid) slot <= slot + 1'b1;
+            if (slot_pop) slot <= slot + 1'b1;
         end
 
     always_ff @(posedge clk)
@@ -134,5 +159,8 @@ module sample_packer #(
             if (is_full) crc <= crc_next;
         end
 
-    always_ff @(posedge clk) held_due <= rest;
+    always_ff @(posedge clk) begin
+        held_due <= rest;
+        if (row_pop) end_row <= row_end;
+    end
 endmodule

@@ -2,11 +2,12 @@
 // lasted too long.
 //
 // `slot_start` begins a slot, the first one as soon as `is_ready`. The samples of the exposures
-// that end with it are ready then, in the rows `next_rows`. A slot lasts slot_clocks, and until no
-// row that is due in the next one still waits: the overrun policy "stretch". `rows_done` frees rows
-// in this clock. A chip that cannot expose while it reads does not count the clocks of a scan
-// (`is_reading`) if a pixel is open in the next slot. `slot_end` comes with the next slot_start and tells of the slot that has ended
-// whether rows were due in it, and whether it was longer than budget_clocks (0: no limit).
+// that end with it are ready then, in the rows `next_rows`. A slot lasts slot_clocks, and if the
+// chip `stretches` slots, until no row that is due in the next one still waits. `rows_done` frees
+// rows in this clock. A chip that cannot expose while it reads does not count the clocks of a scan
+// (`is_reading`) if a pixel is open in the next slot. `slot_end` comes with the next slot_start and
+// tells of the slot that has ended whether rows were due in it, and whether it was longer than
+// budget_clocks (0: no limit).
 //
 // Slots count in the tables of the program: slots 0 .. period - 1 are those of the first period,
 // period .. 2 x period - 1 stand for all later ones.
@@ -20,6 +21,7 @@ module slot_sequencer #(
     input  logic                   is_ready,
     input  logic [SLOT_BITS-1:0]   period,
     input  logic                   exposes_while_reading,
+    input  logic                   stretches,
     input  logic [LENGTH_BITS-1:0] slot_clocks,
     input  logic [LENGTH_BITS-1:0] budget_clocks,
     input  logic [ROWS-1:0]        next_rows,  // of next_slot
@@ -39,7 +41,8 @@ module slot_sequencer #(
     logic [ROWS-1:0] waits, still_waits;
 
     assign still_waits    = waits & ~rows_done;
-    assign slot_start     = has_begun ? counted >= slot_clocks && (still_waits & next_rows) == '0
+    assign slot_start     = has_begun ? counted >= slot_clocks &&
+                                            (!stretches || (still_waits & next_rows) == '0)
                                       : is_ready;
     assign slot_end       = slot_start && has_begun;
     assign ended_has_rows = has_rows;

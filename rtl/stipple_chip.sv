@@ -1,6 +1,6 @@
 // The chip: sequencer, column readout and packets of an image sensor with coded exposure.
 //
-//     schedule_memory -> due_tables -> slot_sequencer -> row_scanner -> row_convert -> ADCs
+//     schedule_memory -> due_tables -> scan_scheduler -> row_scanner -> row_convert -> ADCs
 //                                            ^                              |
 //                                       row_timer <----- row_transfer <-----+
 //                                                             |
@@ -43,6 +43,7 @@ module stipple_chip #(
     input  logic         is_sequential,  // law of the row time: neither of the two: overlapped
     input  logic         is_full_width,
     input  logic         exposes_while_reading,
+    input  logic         drops,          // late rows; else slots are stretched
     input  logic [31:0]  slot_clocks,    // of a slot, at least 1
     input  logic [31:0]  budget_clocks,  // a longer slot is an overrun; 0: none is
     input  logic [31:0]  rot_clocks,
@@ -109,9 +110,9 @@ module stipple_chip #(
     // Which rows and columns are due.
     logic [ADDRESS_BITS-1:0] image_address;
     logic [TILE_COLS*PIXEL_BITS-1:0] image_word;
-    logic is_ready;
-    logic [SLOT_BITS-1:0] next_slot, queued_slot, scan_slot, held_scan_slot;
-    logic [ROWS-1:0] next_rows, scan_rows;
+    logic is_filled, is_ready;
+    logic [SLOT_BITS-1:0] next_slot, scan_slot;
+    logic [ROWS-1:0] next_rows, scan_rows, kept_rows;
     logic [15:0] scan_least;
     logic [COLS-1:0] row_due, row_columns, window_columns;
     logic [PLACE_BITS-1:0] skipped;
@@ -135,7 +136,7 @@ module stipple_chip #(
         .cols,
         .image_address,
         .image_word,
-        .is_ready,
+        .is_ready(is_filled),
         .next_slot,
         .next_rows,
         .next_is_open,
@@ -148,37 +149,19 @@ module stipple_chip #(
         .row_columns
     );
 
-    // Slots, and the queue of those with rows to read.
+    // Slots and their scans.
     logic is_reading;
+    logic [15:0] ended_first_row, undecided, scan_number, sent_number, sent_end_row;
     logic slot_end, ended_has_rows, ended_overrun, slots_overflow;
     logic [ROWS-1:0] rows_done;
     logic scan_over;
 
-    slot_sequencer #(.ROWS(ROWS), .SLOT_BITS(SLOT_BITS), .LENGTH_BITS(42)) u_slots (
-        .clk, .rst,
-        .is_ready,
-        .period,
-        .exposes_while_reading,
-        .slot_clocks(42'(slot_clocks)),
-        .budget_clocks(42'(budget_clocks)),
-        .next_rows,
-        .next_is_open,
-        .after_is_open,
-        .rows_done,
-        .is_reading,
-        .next_slot,
-        .slot_start,
-        .slot_end,
-        .ended_has_rows,
-        .ended_overrun
-    );
-    fifo #(.WIDTH(SLOT_BITS), .DEPTH(2 ** $clog2(DEPTH + 2))) u_slot_queue (
-        .clk, .rst,
-        .push(slot_start && next_rows != '0),
-        .item(next_slot),
-        .pop(scan_start),
-        .valid(slot_waits),
-        .head(queued_slot),
+    scan_scheduler #(.ROWS(ROWS), .DEPTH(DEPTH)) u_scheduler (
+        .clk, .rst, .is_filled, .is_ready, .period, .exposes_while_reading, .drops, .slot_clocks,
+        .budget_clocks, .rows, .next_slot, .next_rows, .next_is_open, .after_is_open, .scan_slot,
+        .scan_rows, .kept_rows, .slot_waits, .scan_start, .is_reading, .rows_done, .scan_over,
+        .slot_start, .slot_end, .ended_has_rows, .ended_overrun, .ended_first_row, .undecided,
+        .scan_number, .sent_number, .sent_end_row,
         .overflow(slots_overflow)
     );
 
@@ -188,7 +171,6 @@ module stipple_chip #(
     logic [47:0] first_transfer, overhead_row_clocks;
     logic may_select, may_transfer, is_last;
 
-    assign scan_slot = scan_start ? queued_slot : held_scan_slot;
     assign settle_columns = 32'(scan_least) + settle_margin;
     always_comb begin
         settle = scan_start ? settle_clocks[31:0] : held_settle;
@@ -204,7 +186,7 @@ module stipple_chip #(
     ) u_scanner (
         .clk, .rst,
         .slot_waits,
-        .slot_rows(scan_rows),
+        .slot_rows(scan_rows & kept_rows),
         .dark_rows,
         .select_wait(first_transfer -
                      (overhead_rows != '0 && !is_sequential ? 48'(full_row_clocks) : '0)),
@@ -242,8 +224,9 @@ module stipple_chip #(
         .row_columns(is_dark ? window_columns : row_columns),
         .row_due(is_dark ? '0 : row_due),
         .may_transfer, .may_select,
-        .convert, .convert_row, .convert_end, .adc_row, .adc_dn, .transfer, .transfer_row, .channel_valid,
-        .channel_dn, .transfer_end, .row_done, .row_done_row, .rows_done, .scan_over,
+        .convert, .convert_row, .convert_end, .adc_row, .adc_dn, .transfer,
+        .transfer_row, .channel_valid, .channel_dn, .transfer_end, .row_done, .row_done_row,
+        .rows_done, .scan_over,
         .sent_valid, .sent_is_last, .sent_due, .sent_dn, .timers_overflow
     );
 
@@ -251,28 +234,31 @@ module stipple_chip #(
     logic packed_row_valid, packed_row_pop, packed_row_is_last, rows_overflow;
     logic [COLS-1:0] packed_row_due;
     logic [DN_BITS-1:0] packed_row_dn;
+    logic [15:0] row_number, row_end, first_row;
     logic ended_valid, ended_pop, has_rows, was_overrun, ended_overflow;
-    logic word_valid, packet_valid, packet_overrun, sender_overflow;
+    logic word_valid, packet_valid, sender_overflow;
+    logic [1:0] packet_flags;
+    logic [15:0] packet_first_row, packet_rows;
     logic [8*WORD_BYTES-1:0] word;
     logic [52:0] packet_slot;
     logic [31:0] packet_samples, packet_bytes, packet_crc;
 
-    fifo #(.WIDTH(1 + COLS + DN_BITS), .DEPTH(ROW_QUEUE)) u_row_queue (
+    fifo #(.WIDTH(33 + COLS + DN_BITS), .DEPTH(ROW_QUEUE)) u_row_queue (
         .clk, .rst,
-        .push(sent_valid),
-        .item({sent_is_last, sent_due, sent_dn}),
+        .push(sent_valid && is_ready),
+        .item({sent_number, sent_end_row, sent_is_last, sent_due, sent_dn}),
         .pop(packed_row_pop),
         .valid(packed_row_valid),
-        .head({packed_row_is_last, packed_row_due, packed_row_dn}),
+        .head({row_number, row_end, packed_row_is_last, packed_row_due, packed_row_dn}),
         .overflow(rows_overflow)
     );
-    fifo #(.WIDTH(2), .DEPTH(2 ** $clog2(DEPTH + 2))) u_ended_slots (
+    fifo #(.WIDTH(18), .DEPTH(2 ** $clog2(DEPTH + 2))) u_ended_slots (
         .clk, .rst,
         .push(slot_end),
-        .item({ended_has_rows, ended_overrun}),
+        .item({ended_first_row, ended_has_rows, ended_overrun}),
         .pop(ended_pop),
         .valid(ended_valid),
-        .head({has_rows, was_overrun}),
+        .head({first_row, has_rows, was_overrun}),
         .overflow(ended_overflow)
     );
     sample_packer #(
@@ -283,15 +269,24 @@ module stipple_chip #(
         .row_due(packed_row_due),
         .row_dn(packed_row_dn),
         .row_is_last(packed_row_is_last),
+        .row_number,
+        .row_end,
         .row_pop(packed_row_pop),
         .slot_valid(ended_valid),
         .slot_has_rows(has_rows),
         .slot_overrun(was_overrun),
+        .slot_first_row(first_row),
+        .undecided,
+        .is_reading,
+        .scan_number,
+        .rows,
         .slot_pop(ended_pop),
         .word_valid,
         .word,
         .packet_valid,
-        .packet_overrun,
+        .packet_flags,
+        .packet_first_row,
+        .packet_rows,
         .packet_slot,
         .packet_samples,
         .packet_bytes,
@@ -300,11 +295,12 @@ module stipple_chip #(
     packet_sender #(.WORD_BYTES(WORD_BYTES), .WORDS(WORDS), .PACKETS(PACKETS)) u_sender (
         .clk, .rst,
         .stream_crc,
-        .rows,
         .word_valid,
         .word,
         .packet_valid,
-        .packet_overrun,
+        .packet_flags,
+        .packet_first_row,
+        .packet_rows,
         .packet_slot,
         .packet_samples,
         .packet_bytes,
@@ -328,8 +324,5 @@ module stipple_chip #(
                               rows_overflow, sender_overflow};
         end
 
-    always_ff @(posedge clk) begin
-        held_scan_slot <= scan_slot;
-        held_settle <= settle;
-    end
+    always_ff @(posedge clk) held_settle <= settle;
 endmodule

@@ -32,11 +32,12 @@ struct ChipSize {
 struct ChipProgram {
     ReadoutTiming timing;
     FrameShape window;
-    std::int64_t budget_clocks = 0;
+    SlotBudget budget;
     int period_slots = 1;
     std::uint32_t stream_crc = 0;  ///< header CRC of the file
     std::filesystem::path image;   ///< of the schedule memory
-    int slots = 1;                 ///< packets after which the run ends
+    int packets = 1;               ///< after which, and min_clocks, the run ends
+    std::int64_t min_clocks = 0;
     std::int64_t max_clocks = 1;
     std::uint32_t seed = 1;  ///< of what the columns show outside conversions, and of tready
 };

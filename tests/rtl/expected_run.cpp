@@ -40,13 +40,17 @@ std::uint64_t little_endian(std::span<const std::uint8_t> bytes) {
 
 }  // namespace
 
-ChipEvents expected_events(ReadoutCost& cost, int slots) {
-    ChipEvents events;
+ExpectedRun expected_run(ReadoutCost& cost, int slots) {
+    ExpectedRun run;
+    ChipEvents& events = run.events;
     for (int slot = 0; slot < slots; ++slot) {
         const SlotCost it = cost.add_next();
         const SlotTimes times = cost.times(slot, it);
         events.slot_start.push_back({it.begin, 0});
-        if (!times.rows.empty()) events.scan_start.push_back({it.scan_begin, 0});
+        // Without another row the dark rows are not read either.
+        if (times.rows.empty() || times.rows.back().load.row < 0) continue;
+        run.scanned.push_back(slot);
+        events.scan_start.push_back({it.scan_begin, 0});
         for (const RowTimes& row : times.rows) {
             events.select.push_back({row.select, row.load.row});
             events.convert.push_back({row.convert, row.load.row});
@@ -57,17 +61,7 @@ ChipEvents expected_events(ReadoutCost& cost, int slots) {
         }
     }
     for (const NamedKind& kind : kKinds) std::ranges::sort(events.*kind.kind);
-    return events;
-}
-
-std::vector<int> scanned_slots(ReadoutCost& cost, int slots) {
-    std::vector<int> scanned;
-    std::vector<RowLoad> loads;
-    for (int slot = 0; slot < slots; ++slot) {
-        cost.row_loads().list(slot, loads);
-        if (!loads.empty()) scanned.push_back(slot);
-    }
-    return scanned;
+    return run;
 }
 
 ChipEvents cut_to(const ChipEvents& expected, ChipEvents events) {

@@ -11,11 +11,14 @@
 
 namespace stipple {
 
-/// The strobes of the chip in the first slots, by ReadoutCost. With kStretch only.
-[[nodiscard]] ChipEvents expected_events(ReadoutCost& cost, int slots);
+/// What the chip does in its first slots.
+struct ExpectedRun {
+    ChipEvents events;
+    std::vector<int> scanned;  ///< the slots of which rows are read
+};
 
-/// Slots among the first ones whose scans read rows.
-[[nodiscard]] std::vector<int> scanned_slots(ReadoutCost& cost, int slots);
+/// By ReadoutCost. Precondition: nothing was added to it yet.
+[[nodiscard]] ExpectedRun expected_run(ReadoutCost& cost, int slots);
 
 /// `events` without those after the last expected one of each kind, in the order of clock and row.
 [[nodiscard]] ChipEvents cut_to(const ChipEvents& expected, ChipEvents events);

@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "core/error.h"
 #include "core/flux_video.h"
 #include "core/index.h"
 #include "readout/program/sequencer_program.h"
@@ -37,13 +38,19 @@ ReadoutTiming fitted(ReadoutTiming timing, const ChipSize& size) {
     return timing;
 }
 
+/// Of the slots and rows.
+std::int64_t last_clock(const ChipEvents& events) {
+    const std::int64_t slot = events.slot_start.back().clock;
+    return events.row_done.empty() ? slot : std::max(slot, events.row_done.back().clock);
+}
+
 /// A run of the model with the file that it writes, and the same on the chip.
 struct Comparison {
     const ChipModel& model;
     ReadoutTiming timing;
     const ExposureSchedule& schedule;
     FrameShape window;
-    std::int64_t budget_clocks;
+    SlotBudget budget;
     int slots;
 
     /// Differences in words; `packets` are those of `file`.
@@ -52,20 +59,22 @@ struct Comparison {
                                                const std::filesystem::path& image,
                                                std::uint32_t seed) const {
         const StreamBytes bytes = read_stream_bytes(file);
-        ReadoutCost cost(timing, schedule, window, {budget_clocks});
-        const ChipEvents expected = expected_events(cost, slots);
-        const std::vector<int> scanned = scanned_slots(cost, slots);
+        ReadoutCost cost(timing, schedule, window, budget);
+        const auto [expected, scanned] = expected_run(cost, slots);
         const ColumnDn dn = [&](int scan, int row) {
             if (index(scan) >= scanned.size()) return std::vector<std::uint16_t>();
-            return columns_of(packets[index(scanned[index(scan)])], schedule, window, row);
+            const int slot = scanned[index(scan)];
+            const auto packet = std::ranges::find(packets, slot, &SamplePacket::slot);
+            return columns_of(*packet, schedule, window, row);
         };
         const ChipProgram program{.timing = timing,
                                   .window = window,
-                                  .budget_clocks = budget_clocks,
+                                  .budget = budget,
                                   .period_slots = compile_schedule(schedule).period_slots,
                                   .stream_crc = bytes.header_crc,
                                   .image = image,
-                                  .slots = slots,
+                                  .packets = static_cast<int>(packets.size()),
+                                  .min_clocks = last_clock(expected) + 1,
                                   .max_clocks = 2 * cost.clocks() + 100'000,
                                   .seed = seed};
         const ChipRun run = model.run(model.size, program, dn);
@@ -89,17 +98,22 @@ std::vector<SamplePacket> draw_packets(const Comparison& it, const std::filesyst
                                .schedule_source = {},
                                .schedule_name = "",
                                .provenance = ""});
-    ReadoutCost cost(it.timing, it.schedule, it.window, {it.budget_clocks});
+    ReadoutCost cost(it.timing, it.schedule, it.window, it.budget);
     std::vector<SamplePacket> packets;
     for (int slot = 0; slot < it.slots; ++slot) {
-        const std::uint8_t flags = cost.add_next().overrun ? SamplePacket::kOverrun : 0;
-        SamplePacket packet{slot, 0, it.window.rows, flags, {}};
-        packet.dn.resize(count_due(it.schedule, slot, 0, it.window.rows, it.window.cols));
+        const SlotCost& read = cost.add_next();
+        const bool is_cut = read.end_row < it.window.rows;
+        const bool is_long = read.overrun && !is_cut;
+        SamplePacket packet{slot, 0, read.end_row, std::uint8_t{is_long}, {}};
+        packet.dn.resize(count_due(it.schedule, slot, 0, read.end_row, it.window.cols));
         for (std::uint16_t& dn : packet.dn)
             dn = static_cast<std::uint16_t>(draw(0, (1 << it.model.size.bit_depth) - 1));
-        writer.write(packet);
-        packets.push_back(std::move(packet));
+        if (read.end_row > 0) packets.push_back(packet);
+        if (is_cut)
+            packets.push_back(
+                {slot, read.end_row, it.window.rows - read.end_row, SamplePacket::kDropped, {}});
     }
+    for (const SamplePacket& packet : packets) writer.write(packet);
     writer.finish();
     return packets;
 }
@@ -121,12 +135,18 @@ Comparison random_comparison(const ChipModel& chip, const ExposureSchedule& sche
         if (all <= 2) timing.row_table_cols = timing.row_table_clocks = {};
     }
     const FrameShape window{draw(1, chip.size.rows), draw(1, chip.size.cols), 1};
-    Comparison it{chip, timing, schedule, window, 0, draw(10, 40)};
+    Comparison it{chip, timing, schedule, window, {}, draw(10, 40)};
     ReadoutCost cost(timing, schedule, window, {});
     for (int slot = 0; slot < it.slots; ++slot) cost.add_next();
-    if (draw(0, 3) > 0)
-        it.budget_clocks =
-            draw(1, static_cast<int>(3 * cost.totals().readout_clocks / it.slots) + 9);
+    if (draw(0, 3) == 0) return it;
+    it.budget.clocks = draw(1, static_cast<int>(3 * cost.totals().readout_clocks / it.slots) + 9);
+    if (draw(0, 1) == 0) return it;
+    try {
+        const SlotBudget drops{it.budget.clocks, OverrunPolicy::kDrop};
+        const ReadoutCost possible(timing, schedule, window, drops);
+        it.budget = drops;
+    } catch (const InputError&) {  // whatever is dropped, no row can be read
+    }
     return it;
 }
 
@@ -157,7 +177,7 @@ bool rows_end_out_of_order(const Comparison& it) {
 TEST(RtlTest, RunsRandomSensorsAndSchedulesAsTheModelClockByClock) {
     const TemporaryFolder folder;
     constexpr std::uint32_t kRuns = 200;
-    int runs = 0, refused = 0, overruns = 0, laws[3] = {};
+    int runs = 0, refused = 0, overruns = 0, dropped = 0, laws[3] = {};
     for (std::uint32_t seed = 0; runs < static_cast<int>(kRuns); ++seed) {
         Draw draw(seed);
         const ChipModel& chip = chip_models()[seed % chip_models().size()];
@@ -171,12 +191,16 @@ TEST(RtlTest, RunsRandomSensorsAndSchedulesAsTheModelClockByClock) {
         const auto packets = draw_packets(it, folder / "a.stipple", draw);
         ASSERT_EQ(it.differences_from(packets, folder / "a.stipple", folder / "a.mem", seed), "")
             << "seed " << seed << ", chip " << chip.name;
-        overruns += static_cast<int>(std::ranges::count_if(packets, &SamplePacket::flags));
+        for (const SamplePacket& packet : packets) {
+            overruns += packet.flags == SamplePacket::kOverrun ? 1 : 0;
+            dropped += packet.flags == SamplePacket::kDropped ? 1 : 0;
+        }
         ++laws[static_cast<int>(it.timing.row_timing)];
         ++runs;
     }
     EXPECT_LT(refused, runs / 4);
     EXPECT_GT(overruns, runs);
+    EXPECT_GT(dropped, runs / 2);
     for (const int law : laws) EXPECT_GT(law, runs / 5);
 }
 
@@ -202,13 +226,14 @@ void expect_the_emulator_s_file(const ChipModel& chip, const SensorChoice& choic
                         *setup.timing,
                         setup.schedule.schedule,
                         shape,
-                        slot_clocks(*setup.timing, setup.params.slot_us),
+                        {slot_clocks(*setup.timing, setup.params.slot_us), setup.overrun},
                         2 * setup.schedule.schedule.period_slots() + 3};
     const FluxVideo light = light_of(shape, it.slots, draw);
     StreamRecorder recorder(folder / "a.stipple", setup);
     std::vector<SamplePacket> packets;
     for (int slot = 0; slot < it.slots; ++slot)
-        packets.push_back(recorder.expose(light.frame(slot)).front());
+        for (const SamplePacket& packet : recorder.expose(light.frame(slot)))
+            packets.push_back(packet);
     recorder.finish();
     write_image(it.schedule, chip.size, folder / "a.mem");
     EXPECT_EQ(it.differences_from(packets, folder / "a.stipple", folder / "a.mem", 1), "");
@@ -235,6 +260,12 @@ TEST(RtlTest, GivesTheFileOfTheEmulatorForTheSchedulesOfTheCatalogue) {
                                     .schedule = schedule,
                                     .settings = {"slot_us=5", "charge_stores=2"},
                                     .schedule_settings = {"tile_rows=12", "tile_cols=6"}});
+    expect_the_emulator_s_file(model("small"),
+                               {.sensor = "lux1310",
+                                .schedule = "tiled",
+                                .settings = {"slot_us=3"},
+                                .schedule_settings = {"tile_rows=12", "tile_cols=12"},
+                                .overrun = OverrunPolicy::kDrop});
     expect_the_emulator_s_file(model("one"), {.sensor = "lux1310",
                                               .schedule = "rolling",
                                               .settings = {"slot_us=5"},
