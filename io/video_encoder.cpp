@@ -99,6 +99,9 @@ AVDictionary* options_of(const VideoCoding& coding) {
     if (coding.uncompressed) return options;
     if (coding.curve == VideoCurve::kSdr) {
         av_dict_set(&options, "crf", "23", 0);  // x264's default
+        // On processors with AVX-512 this step of libx264 r3095 reads memory that nothing was
+        // written to: bits would differ from run to run.
+        av_dict_set(&options, "mbtree", "0", 0);
     } else if (coding.codec == HdrCodec::kHevc) {
         av_dict_set(&options, "crf", "18", 0);
         av_dict_set(&options, "x265-params", x265_parameters(coding).c_str(), 0);
@@ -125,8 +128,7 @@ FfmpegPtr<AVCodecContext> open_encoder(FrameShape shape, const VideoCoding& codi
     encoder->pix_fmt = coding.curve == VideoCurve::kSdr ? AV_PIX_FMT_YUV420P : AV_PIX_FMT_YUV420P10;
     encoder->framerate = av_d2q(coding.frames_hz, kMaxRateTerm);
     encoder->time_base = av_inv_q(encoder->framerate);
-    // On some processors libx264 r3095 gives other bits from run to run if it has several threads.
-    encoder->thread_count = coding.curve == VideoCurve::kSdr ? 1 : kThreads;
+    encoder->thread_count = kThreads;
     declare_colours(*encoder, coding.curve);
     if (global_header) encoder->flags |= AV_CODEC_FLAG_GLOBAL_HEADER;
     AVDictionary* options = options_of(coding);
