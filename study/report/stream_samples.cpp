@@ -87,9 +87,9 @@ std::optional<std::uint64_t> SlotSamples::exposure_at(std::size_t part, const Pi
 std::size_t SlotSamples::readout_of(const SchedulePart& part) {
     const ReadoutValues values = readout_values(calibration_at(*header_, part.first_slot));
     const auto known = std::ranges::find(readouts_, values, &Readout::values);
+    const auto at = static_cast<std::size_t>(known - readouts_.begin());
     if (known == readouts_.end()) readouts_.push_back({values, {}});
-    return static_cast<std::size_t>(std::ranges::find(readouts_, values, &Readout::values) -
-                                    readouts_.begin());
+    return at;
 }
 
 std::uint16_t SlotSamples::kind_of(std::uint64_t open_slots, std::size_t readout) {
@@ -114,14 +114,14 @@ void SlotSamples::add_kinds() {
     }
 }
 
-void SlotSamples::add_row(const SamplePacket& packet, std::size_t part, int row,
+void SlotSamples::add_row(const SamplePacket& packet, const PacketPart& of, int row,
                           const std::uint16_t*& dn) {
+    const auto [part, readout] = of;
     const bool shown = row >= area_.first_row && row < area_.first_row + area_.rows;
     const int planes = header_->shape.planes;
-    const std::size_t readout = readout_of(parts_[part]);
     for_each_readout(
         *parts_[part].schedule, readout_slot(parts_[part], packet.slot), row, header_->shape.cols,
-        [&](int col, int span_slots) {
+        [&, part = part, readout = readout](int col, int span_slots) {
             if (shown && col >= area_.first_col && col < area_.first_col + area_.cols) {
                 const int pixel = (row - area_.first_row) * area_.cols + col - area_.first_col;
                 if (const auto read = exposure_at(part, {packet.slot, row, col}, span_slots)) {
@@ -137,9 +137,10 @@ void SlotSamples::add_row(const SamplePacket& packet, std::size_t part, int row,
 void SlotSamples::add(const SamplePacket& packet) {
     if (packet.dn.empty()) return;
     const std::size_t part = part_at(parts_, packet.slot);
+    const PacketPart of{part, readout_of(parts_[part])};
     const std::uint16_t* dn = packet.dn.data();
     for (int row = packet.first_row; row < packet.first_row + packet.rows; ++row)
-        add_row(packet, part, row, dn);
+        add_row(packet, of, row, dn);
 }
 
 void SlotSamples::clear() {

@@ -89,7 +89,12 @@ class SlotSamples {
         ReadoutValues values;
         std::unordered_map<std::uint64_t, std::uint16_t> kinds;  ///< by open slots
     };
-    void add_row(const SamplePacket& packet, std::size_t part, int row, const std::uint16_t*& dn);
+    struct PacketPart {
+        std::size_t part;     ///< of parts_
+        std::size_t readout;  ///< of readouts_
+    };
+    void add_row(const SamplePacket& packet, const PacketPart& of, int row,
+                 const std::uint16_t*& dn);
     [[nodiscard]] std::uint16_t kind_of(std::uint64_t open_slots, std::size_t readout);
     /// Open slots of what is read at the end of a slot; nothing if it began in an unknown part.
     [[nodiscard]] std::optional<std::uint64_t> exposure_at(std::size_t part, const PixelSlot& at,
