@@ -49,8 +49,8 @@ TEST(RecentSlotsTest, SwitchesBeforeTheSlotsThatAreThereAreForgotten) {
     const std::int64_t begin = recent.extent().first;
     EXPECT_EQ(begin, kSlots - 48);
     std::vector<SamplePacket> packets;
-    const auto header = recent.visit(
-        begin, kSlots, [&](const SamplePacket& packet) { packets.push_back(packet); });
+    const auto header =
+        recent.visit(begin, kSlots, [&](const SamplePacket& packet) { packets.push_back(packet); });
     EXPECT_EQ(packets.size(), 48U);
     ASSERT_EQ(header->switches.size(), 3U);
     EXPECT_EQ(header->switches.front().slot, 60);

@@ -27,11 +27,10 @@ void wait_until(const std::function<bool()>& condition) {
 TEST(V4l2ViewTest, FramesAreShownAndRecorded) {
     const TemporaryFolder folder;
     EmulatedV4l2 device;
-    ViewedCamera camera({.address = "v4l2:/dev/video0",
-                         .open = [](const CameraSettings& settings) {
-                             return open_emulated(settings);
-                         },
-                         .folder = folder.path()});
+    ViewedCamera camera(
+        {.address = "v4l2:/dev/video0",
+         .open = [](const CameraSettings& settings) { return open_emulated(settings); },
+         .folder = folder.path()});
     int pushed = 0;
     const auto push = [&](int frames) {
         for (const int end = pushed + frames; pushed < end; ++pushed)
