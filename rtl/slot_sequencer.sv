@@ -70,4 +70,13 @@ module slot_sequencer #(
             counted <= counted + LENGTH_BITS'(counted != '1 && !pauses);
             waits <= still_waits;
         end
+
+`ifdef STIPPLE_ASSERT
+    // Rows that wait are due in no slot that begins, if slots are stretched.
+    always_ff @(posedge clk)
+        if (!rst && slot_start && has_begun) begin
+            assert (counted >= slot_clocks);
+            assert (!stretches || (waits & ~rows_done & next_rows) == '0);
+        end
+`endif
 endmodule
