@@ -14,32 +14,13 @@
 #include "readout/sensor_file.h"
 #include "readout/stream_recorder.h"
 #include "stream/stream_writer.h"
-#include "tests/readout/gapped_schedule.h"
-#include "tests/readout/timing/random_readout.h"
 #include "tests/rtl/chip_capture.h"
 #include "tests/rtl/expected_run.h"
+#include "tests/rtl/random_chip.h"
 #include "tests/support/temporary_folder.h"
 
 namespace stipple {
 namespace {
-
-const ChipModel& model(const std::string& name) {
-    return *std::ranges::find(chip_models(), name, &ChipModel::name);
-}
-
-/// The timing of a sensor on the structure of a chip.
-ReadoutTiming fitted(ReadoutTiming timing, const ChipSize& size) {
-    timing.rows = size.rows;
-    timing.cols = size.cols;
-    timing.addressing = {.kind = size.group_rows * size.group_cols > 1
-                                     ? ColumnAddressing::Kind::kGroup
-                                     : ColumnAddressing::Kind::kSkipChannel,
-                         .channels = size.channels,
-                         .group_cols = size.group_cols,
-                         .group_rows = size.group_rows};
-    timing.columns_per_adc = size.columns_per_adc;
-    return timing;
-}
 
 std::string byte_differences(const std::vector<std::uint8_t>& expected,
                              const std::vector<std::uint8_t>& given) {
@@ -143,20 +124,7 @@ std::vector<SamplePacket> draw_packets(const Comparison& it, const std::filesyst
 
 /// Times of a random sensor that a chip of this size can have, and a window of it.
 Comparison random_comparison(const ChipModel& chip, const ExposureSchedule& schedule, Draw& draw) {
-    ReadoutTiming timing = fitted(random_timing(draw), chip.size);
-    timing.dark_rows = std::min(timing.dark_rows, chip.size.dark_rows);
-    timing.bits_per_sample = chip.size.bit_depth;
-    timing.exposes_while_reading = draw(0, 3) > 0;
-    if (timing.rot_clocks == 0 && timing.adc_clocks == 0 &&
-        (timing.settle_clocks.empty() || timing.settle_clocks.front() == 0))
-        timing.rot_clocks = 1;
-    const int all = chip.size.cols / chip.size.channels;
-    if (!timing.row_table_cols.empty()) {
-        timing.clocks_per_column = 1;
-        timing.row_table_cols = {chip.size.channels, 2 * chip.size.channels, chip.size.cols};
-        timing.row_table_clocks = {1, draw(2, 4), draw(all, all + 3)};
-        if (all <= 2) timing.row_table_cols = timing.row_table_clocks = {};
-    }
+    const ReadoutTiming timing = random_chip_timing(chip.size, draw);
     const FrameShape window{draw(1, chip.size.rows), draw(1, chip.size.cols), 1};
     Comparison it{chip, timing, schedule, window, {}, draw(10, 40)};
     it.offset = draw(0, compile_schedule(schedule).period_slots - 1);
@@ -172,18 +140,6 @@ Comparison random_comparison(const ChipModel& chip, const ExposureSchedule& sche
     } catch (const InputError&) {  // whatever is dropped, no row can be read
     }
     return it;
-}
-
-/// A schedule for a chip: as gapped as its memory can say.
-ExposureSchedule schedule_for(const ChipSize& size, std::uint32_t seed, Draw& draw) {
-    const int rows = draw(0, 1) == 0 ? size.tile_rows : 4;
-    const int cols = draw(0, 1) == 0 ? size.tile_cols : 4;
-    if (size.pixel_bits > 1 && draw(0, 2) == 0) return random_frames(draw);
-    if (size.pixel_bits > 2 && draw(0, 1) == 0)
-        return interleaved_schedule(rows, cols, draw(1, 5), seed);
-    if (size.pixel_bits > 1 && draw(0, 1) == 0)
-        return gapped_schedule(rows, cols, draw(13, size.depth), seed);
-    return random_schedule(rows, cols, std::vector{1, draw(2, 3), draw(4, 8)}, seed);
 }
 
 /// The end of a row's time is before that of an earlier row: its ADCs convert fewer columns. The
