@@ -71,6 +71,7 @@ enum {
 };
 
 // X(name, address, count, bits, reset, access, lock) for each register.
+// clang-format off
 #define STIPPLE_REGISTERS(X) \
     X(ID, 0x000, 1, 32, 0, read, none) \
     X(ARRAY_ROWS, 0x004, 1, 16, 0, read, none) \
@@ -123,3 +124,4 @@ enum {
     X(SETTLE_CLOCKS, 0x140, 16, 32, 0, both, run) \
     X(TABLE_COLS, 0x180, 16, 32, 0, both, run) \
     X(TABLE_CLOCKS, 0x1C0, 16, 32, 0, both, run)
+// clang-format on

@@ -27,6 +27,7 @@ module due_tables #(
     input  logic                            clk,
     input  logic                            rst,
     input  logic [SLOT_BITS-1:0]            period,
+    input  logic [SLOT_BITS-1:0]            offset,  // slot of the program in slot 0
     input  logic [SIDE_BITS-1:0]            rows,
     input  logic [SIDE_BITS-1:0]            cols,
     output logic [ADDRESS_BITS-1:0]         image_address,
@@ -78,7 +79,7 @@ module due_tables #(
     // Steps 1 and 2.
     logic [TILE_COLS-1:0] is_read, is_open, in_second, is_used, due;
     logic [2*TILE_COLS-1:0] early, early_next;
-    assign image_slot = in_period(slot);
+    assign image_slot = in_period(in_period(slot) + offset);
     assign image_address = ADDRESS_BITS'(image_slot) * ADDRESS_BITS'(TILE_ROWS) +
                            ADDRESS_BITS'(row);
     assign early = step == WARM_UP && slot == '0 ? '0 : under_way[TILE_BITS'(row)];

@@ -19,6 +19,7 @@ module packet_sender #(
     input  logic [8*WORD_BYTES-1:0] word,
     input  logic                    packet_valid,
     input  logic [1:0]              packet_flags,  // dropped, overrun
+    input  logic [15:0]             packet_switches,
     input  logic [15:0]             packet_first_row,
     input  logic [15:0]             packet_rows,
     input  logic [52:0]             packet_slot,
@@ -26,6 +27,7 @@ module packet_sender #(
     input  logic [31:0]             packet_bytes,
     input  logic [31:0]             packet_crc,
     output logic                    overflow,
+    output logic                    is_idle,  // all packets are sent
     output logic                    m_axis_tvalid,
     input  logic                    m_axis_tready,
     output logic [8*WORD_BYTES-1:0] m_axis_tdata,
@@ -44,7 +46,7 @@ module packet_sender #(
     logic is_sent, is_whole_word, words_overflow, packets_overflow;
 
     logic [1:0] flags;
-    logic [15:0] first_row, rows;
+    logic [15:0] switches, first_row, rows;
     logic [52:0] slot;
     logic [31:0] samples, bytes, payload_crc;
     logic has_packet, has_word;
@@ -59,20 +61,21 @@ module packet_sender #(
         .head(payload),
         .overflow(words_overflow)
     );
-    fifo #(.WIDTH(183), .DEPTH(PACKETS)) u_packets (
+    fifo #(.WIDTH(199), .DEPTH(PACKETS)) u_packets (
         .clk, .rst,
         .push(packet_valid),
-        .item({packet_flags, packet_first_row, packet_rows, packet_slot, packet_samples,
+        .item({packet_flags, packet_switches, packet_first_row, packet_rows, packet_slot, packet_samples,
                packet_bytes, packet_crc}),
         .pop(is_sent && m_axis_tlast),
         .valid(has_packet),
-        .head({flags, first_row, rows, slot, samples, bytes, payload_crc}),
+        .head({flags, switches, first_row, rows, slot, samples, bytes, payload_crc}),
         .overflow(packets_overflow)
     );
     assign overflow = words_overflow || packets_overflow;
+    assign is_idle  = !has_packet;
 
     // The first byte is the lowest.
-    assign header = {payload_crc, bytes, samples, rows, first_row, 11'd0, slot, 16'd0, 6'd0, flags,
+    assign header = {payload_crc, bytes, samples, rows, first_row, 11'd0, slot, switches, 6'd0, flags,
                      8'd1, 32'h4B50_53C5};
 
     crc32c #(.BYTES(WORD_BYTES)) u_crc (

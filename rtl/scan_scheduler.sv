@@ -15,7 +15,11 @@ module scan_scheduler #(
     input  logic                 rst,
     input  logic                 is_filled,  // the tables are
     output logic                 is_ready,
+    input  logic                 stops,
+    input  logic                 takes,
+    input  logic                 is_swapping,
     input  logic [SLOT_BITS-1:0] period,
+    input  logic [SLOT_BITS-1:0] other_period,
     input  logic                 exposes_while_reading,
     input  logic                 drops,
     input  logic [31:0]          slot_clocks,
@@ -35,6 +39,7 @@ module scan_scheduler #(
     input  logic                 scan_over,
     output logic                 slot_start,
     output logic                 slot_end,
+    output logic                 is_over,
     output logic                 ended_has_rows,
     output logic                 ended_overrun,
     output logic [15:0]          ended_first_row,
@@ -51,7 +56,11 @@ module scan_scheduler #(
     slot_sequencer #(.ROWS(ROWS), .SLOT_BITS(SLOT_BITS), .LENGTH_BITS(42)) u_slots (
         .clk, .rst,
         .is_ready,
+        .stops,
+        .takes,
+        .is_swapping,
         .period,
+        .other_period,
         .exposes_while_reading,
         .stretches(!drops),
         .slot_clocks(42'(slot_clocks)),
@@ -65,7 +74,8 @@ module scan_scheduler #(
         .slot_start,
         .slot_end,
         .ended_has_rows,
-        .ended_overrun
+        .ended_overrun,
+        .is_over
     );
 
     // Deadlines, and the queue of slots with rows to read.

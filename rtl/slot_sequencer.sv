@@ -9,6 +9,10 @@
 // tells of the slot that has ended whether rows were due in it, and whether it was longer than
 // budget_clocks (0: no limit).
 //
+// `takes` makes the slot other_period the next one, of another bank of the schedule memory, and
+// `is_swapping` lets it begin only when no row waits. If the chip `stops`, the slot that would begin
+// does not, and none does any more (`is_over`).
+//
 // Slots count in the tables of the program: slots 0 .. period - 1 are those of the first period,
 // period .. 2 x period - 1 stand for all later ones.
 module slot_sequencer #(
@@ -19,7 +23,11 @@ module slot_sequencer #(
     input  logic                   clk,
     input  logic                   rst,
     input  logic                   is_ready,
+    input  logic                   stops,
+    input  logic                   takes,
+    input  logic                   is_swapping,
     input  logic [SLOT_BITS-1:0]   period,
+    input  logic [SLOT_BITS-1:0]   other_period,
     input  logic                   exposes_while_reading,
     input  logic                   stretches,
     input  logic [LENGTH_BITS-1:0] slot_clocks,
@@ -33,18 +41,19 @@ module slot_sequencer #(
     output logic                   slot_start,
     output logic                   slot_end,
     output logic                   ended_has_rows,
-    output logic                   ended_overrun
+    output logic                   ended_overrun,
+    output logic                   is_over
 );
-    logic has_begun, has_rows, pauses;
+    logic has_begun, has_rows, pauses, is_due, may_begin;
     logic [LENGTH_BITS-1:0] length;   // of the slot so far, at most all ones
     logic [LENGTH_BITS-1:0] counted;  // clocks of it that count, the same
     logic [ROWS-1:0] waits, still_waits;
 
     assign still_waits    = waits & ~rows_done;
-    assign slot_start     = has_begun ? counted >= slot_clocks &&
-                                            (!stretches || (still_waits & next_rows) == '0)
-                                      : is_ready;
-    assign slot_end       = slot_start && has_begun;
+    assign may_begin      = !stretches || (still_waits & (is_swapping ? '1 : next_rows)) == '0;
+    assign is_due         = !is_over && (has_begun ? counted >= slot_clocks && may_begin : is_ready);
+    assign slot_start     = is_due && !stops;
+    assign slot_end       = is_due && has_begun;
     assign ended_has_rows = has_rows;
     assign pauses         = !exposes_while_reading && is_reading &&
                             (slot_start ? after_is_open : next_is_open);
@@ -58,6 +67,7 @@ module slot_sequencer #(
             counted <= '0;
             waits <= '0;
             next_slot <= '0;
+            is_over <= 1'b0;
         end else if (slot_start) begin
             has_begun <= 1'b1;
             has_rows <= next_rows != '0;
@@ -69,6 +79,8 @@ module slot_sequencer #(
             length <= length + LENGTH_BITS'(length != '1);
             counted <= counted + LENGTH_BITS'(counted != '1 && !pauses);
             waits <= still_waits;
+            if (takes) next_slot <= other_period;
+            is_over <= is_over || is_due;
         end
 
 `ifdef STIPPLE_ASSERT

@@ -15,7 +15,6 @@
 #include <utility>
 
 #include "core/index.h"
-#include "readout/timing/slot_readout.h"
 #include "tests/rtl/chip_run.h"
 
 namespace stipple {
@@ -38,90 +37,66 @@ unsigned bits_of(const Port& port, std::size_t first, unsigned bits) {
     return (two >> (first % 8)) & ((1U << bits) - 1U);
 }
 
-/// Sets the registers of a chip.
-template <typename Chip>
-void set_registers(Chip& chip, const ChipProgram& program) {
-    const ReadoutTiming& timing = program.timing;
-    const auto whole = [](std::int64_t value) { return static_cast<std::uint32_t>(value); };
-    chip.rows = static_cast<std::uint16_t>(program.window.rows);
-    chip.cols = static_cast<std::uint16_t>(program.window.cols);
-    chip.period = static_cast<std::uint8_t>(program.period_slots);
-    chip.is_sequential = timing.row_timing == RowTiming::kSequential;
-    chip.is_full_width = timing.row_timing == RowTiming::kFullWidth;
-    chip.exposes_while_reading = timing.exposes_while_reading;
-    chip.drops = program.budget.policy == OverrunPolicy::kDrop;
-    chip.slot_clocks = whole(std::max(
-        {program.budget.clocks, std::int64_t{1}, code_load_clocks(timing, program.window.rows)}));
-    chip.budget_clocks = whole(program.budget.clocks);
-    chip.rot_clocks = whole(timing.rot_clocks);
-    chip.skip_row_clocks = whole(timing.skip_row_clocks);
-    constexpr std::size_t kSettles = sizeof chip.settle_clocks / 4;
-    const auto& settles = timing.settle_clocks;
-    for (std::size_t i = 0; i < kSettles; ++i)
-        set_word(chip.settle_clocks, i,
-                 settles.empty() ? 0 : whole(settles[std::min(i, settles.size() - 1)]));
-    chip.settle_margin = whole(timing.settle_margin);
-    chip.adc_clocks = whole(timing.adc_clocks);
-    chip.adc_skip = timing.adc_skip;
-    chip.blanking_clocks = whole(timing.blanking_clocks);
-    chip.clocks_per_column = whole(timing.clocks_per_column);
-    chip.io_clocks = whole(timing.io_clocks);
-    chip.link_bits = static_cast<std::uint64_t>(timing.link_lanes > 0
-                                                    ? timing.addressing.channels *
-                                                          timing.bits_per_sample * timing.clock_hz
-                                                    : 0);
-    chip.link_rate = static_cast<std::uint64_t>(timing.link_lanes * timing.link_bps);
-    chip.has_table = !timing.row_table_cols.empty();
-    for (std::size_t i = 0; chip.has_table && i < sizeof chip.table_cols / 4; ++i) {
-        const std::size_t at = std::min(i, timing.row_table_cols.size() - 1);
-        set_word(chip.table_cols, i, whole(timing.row_table_cols[at]));
-        set_word(chip.table_clocks, i, whole(timing.row_table_clocks[at]));
-    }
-    chip.dark_rows = static_cast<std::uint8_t>(timing.dark_rows);
-    chip.overhead_clocks = whole(timing.overhead_clocks);
-    chip.overhead_rows = static_cast<std::uint16_t>(timing.overhead_rows);
-    chip.full_row_clocks = whole(full_row_clocks(timing, program.window.cols));
-    chip.stream_crc = program.stream_crc;
-}
-
 /// Clocks a chip, presents DN to it and notes what it does.
 template <typename Chip>
-class VerilatedRun {
+class VerilatedChip : public ChipSimulation {
   public:
-    VerilatedRun(const ChipSize& size, const ChipProgram& program, const ColumnDn& dn)
-        : size_(size), program_(program), dn_(dn), engine_(program.seed) {
-        const std::string image = "+schedule=" + program.image.string();
+    VerilatedChip(const ChipSize& size, const ChipSurroundings& with)
+        : size_(size), dn_(with.dn), engine_(with.seed) {
+        const std::string image = "+schedule=" + with.image.string();
         std::array<const char*, 2> arguments{"chip", image.c_str()};
-        context_.commandArgs(static_cast<int>(arguments.size()), arguments.data());
+        context_.commandArgs(with.image.empty() ? 1 : 2, arguments.data());
         chip_ = std::make_unique<Chip>(&context_);
-        set_registers(*chip_, program);
-    }
-
-    ChipRun run() {
+        chip_->stream_crc = with.stream_crc;
+        chip_->s_axil_bready = chip_->s_axil_rready = 1;
+        chip_->s_axil_wstrb = 0xF;
         chip_->rst = 1;
-        for (int i = 0; i < 2; ++i) clock(false);
+        wait(2);
         chip_->rst = 0;
-        while ((run_.packets < program_.packets || run_.clocks < program_.min_clocks) &&
-               run_.clocks < program_.max_clocks)
-            clock(true);
-        run_.fault = chip_->fault;
-        chip_->final();
-        return std::move(run_);
+        clocks = 0;
+    }
+    VerilatedChip(const VerilatedChip&) = delete;
+    VerilatedChip& operator=(const VerilatedChip&) = delete;
+    ~VerilatedChip() override { chip_->final(); }
+
+    std::optional<std::uint32_t> read(std::uint32_t address) override {
+        chip_->s_axil_araddr = static_cast<std::uint16_t>(address);
+        chip_->s_axil_arvalid = 1;
+        clock();
+        chip_->s_axil_arvalid = 0;
+        const bool is_good = chip_->s_axil_rresp == 0;
+        const std::uint32_t value = chip_->s_axil_rdata;
+        clock();
+        return is_good ? std::optional(value) : std::nullopt;
+    }
+    bool write(std::uint32_t address, std::uint32_t value) override {
+        chip_->s_axil_awaddr = static_cast<std::uint16_t>(address);
+        chip_->s_axil_wdata = value;
+        chip_->s_axil_awvalid = chip_->s_axil_wvalid = 1;
+        clock();
+        chip_->s_axil_awvalid = chip_->s_axil_wvalid = 0;
+        const bool is_good = chip_->s_axil_bresp == 0;
+        clock();
+        return is_good;
+    }
+    void wait(std::int64_t count) override {
+        for (std::int64_t i = 0; i < count; ++i) clock();
     }
 
   private:
-    void clock(bool watch) {
+    void clock() {
         chip_->clk = 0;
         chip_->m_axis_tready = engine_() % 4 != 0;
         show({});
         chip_->eval();
-        if (chip_->convert_end && !run_.events.scan_start.empty()) {
-            show(dn_(static_cast<int>(run_.events.scan_start.size()) - 1, row(chip_->adc_row)));
+        if (chip_->convert_end && !events.scan_start.empty()) {
+            show(dn_(static_cast<int>(events.scan_start.size()) - 1, row(chip_->adc_row)));
             chip_->eval();
         }
-        if (watch) note();
+        note();
         chip_->clk = 1;
         chip_->eval();
+        ++clocks;
     }
     /// The columns show these DN, columns without one anything.
     void show(const std::vector<std::uint16_t>& dn) {
@@ -138,10 +113,10 @@ class VerilatedRun {
         return static_cast<int>(place) - size_.dark_rows;
     }
     void note() {
-        ChipEvents& events = run_.events;
-        const std::int64_t now = run_.clocks;
+        if (chip_->slot_start && first_slot < 0) first_slot = clocks;
+        if (first_slot < 0) return;  // the tables are being filled
+        const std::int64_t now = clocks - first_slot;
         if (chip_->slot_start) events.slot_start.push_back({now, 0});
-        if (events.slot_start.empty()) return;  // the tables are being filled
         if (chip_->scan_start) events.scan_start.push_back({now, 0});
         if (chip_->select) events.select.push_back({now, row(chip_->select_row)});
         if (chip_->convert) events.convert.push_back({now, row(chip_->convert_row)});
@@ -155,40 +130,36 @@ class VerilatedRun {
                 events.row_done.push_back(
                     {now, row(bits_of(chip_->row_done_row, i * place_bits, place_bits))});
         take_beat();
-        ++run_.clocks;
     }
     void take_beat() {
         if (!chip_->m_axis_tvalid || !chip_->m_axis_tready) return;
-        if (run_.packets == program_.packets) return;
         for (unsigned i = 0; i < static_cast<unsigned>(size_.word_bytes); ++i)
             if ((chip_->m_axis_tkeep >> i & 1U) != 0)
-                run_.bytes.push_back(
+                bytes.push_back(
                     static_cast<std::uint8_t>(bits_of(chip_->m_axis_tdata, index(8 * i), 8)));
-        run_.packets += chip_->m_axis_tlast;
+        packets += chip_->m_axis_tlast;
     }
 
     ChipSize size_;
-    const ChipProgram& program_;
-    const ColumnDn& dn_;
+    ColumnDn dn_;
     std::mt19937 engine_;
     VerilatedContext context_;
     std::unique_ptr<Chip> chip_;
-    ChipRun run_;
 };
 
 template <typename Chip>
-ChipRun run_verilated(const ChipSize& size, const ChipProgram& program, const ColumnDn& dn) {
-    return VerilatedRun<Chip>(size, program, dn).run();
+std::unique_ptr<ChipSimulation> make_chip(const ChipSize& size, const ChipSurroundings& with) {
+    return std::make_unique<VerilatedChip<Chip>>(size, with);
 }
 
 }  // namespace
 
 std::span<const ChipModel> chip_models() {
     static constexpr ChipModel kModels[] = {
-        {"paper", paper_size, run_verilated<Vchip_paper>},
-        {"small", small_size, run_verilated<Vchip_small>},
-        {"group", group_size, run_verilated<Vchip_group>},
-        {"one", one_size, run_verilated<Vchip_one>},
+        {"paper", paper_size, make_chip<Vchip_paper>},
+        {"small", small_size, make_chip<Vchip_small>},
+        {"group", group_size, make_chip<Vchip_group>},
+        {"one", one_size, make_chip<Vchip_one>},
     };
     return kModels;
 }

@@ -3,11 +3,10 @@
 #include <cstdint>
 #include <filesystem>
 #include <functional>
+#include <memory>
+#include <optional>
 #include <span>
 #include <vector>
-
-#include "core/geometry.h"
-#include "readout/timing/readout_cost.h"
 
 namespace stipple {
 
@@ -28,20 +27,6 @@ struct ChipSize {
     int word_bytes = 4;
 };
 
-/// What a chip runs.
-struct ChipProgram {
-    ReadoutTiming timing;
-    FrameShape window;
-    SlotBudget budget;
-    int period_slots = 1;
-    std::uint32_t stream_crc = 0;  ///< header CRC of the file
-    std::filesystem::path image;   ///< of the schedule memory
-    int packets = 1;               ///< after which, and min_clocks, the run ends
-    std::int64_t min_clocks = 0;
-    std::int64_t max_clocks = 1;
-    std::uint32_t seed = 1;  ///< of what the columns show outside conversions, and of tready
-};
-
 /// A strobe of the chip, `place` is its row (dark rows below 0) or 0.
 struct ChipEvent {
     std::int64_t clock = 0;  ///< since the first slot
@@ -56,22 +41,39 @@ struct ChipEvents {
         transfer_end, row_done;
 };
 
-struct ChipRun {
+/// The DN of the columns of a row in a scan (counted from 0), from column 0 on.
+using ColumnDn = std::function<std::vector<std::uint16_t>(int scan, int row)>;
+
+/// What surrounds a chip.
+struct ChipSurroundings {
+    std::filesystem::path image;   ///< of bank 0; empty: none
+    std::uint32_t stream_crc = 0;  ///< header CRC of the file
+    ColumnDn dn;
+    std::uint32_t seed = 1;  ///< of what the columns show outside conversions, and of tready
+};
+
+/// A chip that is being simulated: its registers, and what it has done since reset.
+class ChipSimulation {
+  public:
+    virtual ~ChipSimulation() = default;
+    /// A register (docs/chip_registers.md), in two clocks; nothing if the access is an error.
+    virtual std::optional<std::uint32_t> read(std::uint32_t address) = 0;
+    /// False if the access is an error.
+    virtual bool write(std::uint32_t address, std::uint32_t value) = 0;
+    virtual void wait(std::int64_t clocks) = 0;
+
+    std::int64_t clocks = 0;       ///< since reset
+    std::int64_t first_slot = -1;  ///< the clock of the first slot; events count from it
     ChipEvents events;
     std::vector<std::uint8_t> bytes;  ///< of the stream
     int packets = 0;
-    unsigned fault = 0;
-    std::int64_t clocks = 0;
 };
-
-/// The DN of the columns of a row in a scan (counted from 0), from column 0 on.
-using ColumnDn = std::function<std::vector<std::uint16_t>(int scan, int row)>;
 
 /// A verilated chip.
 struct ChipModel {
     const char* name;
     ChipSize size;
-    ChipRun (*run)(const ChipSize& size, const ChipProgram& program, const ColumnDn& dn);
+    std::unique_ptr<ChipSimulation> (*make)(const ChipSize& size, const ChipSurroundings& with);
 };
 
 /// All verilated chips.

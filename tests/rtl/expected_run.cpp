@@ -8,8 +8,6 @@
 
 #include "core/error.h"
 #include "core/index.h"
-#include "readout/program/program_text.h"
-#include "readout/program/sequencer_program.h"
 
 namespace stipple {
 namespace {
@@ -64,20 +62,12 @@ ExpectedRun expected_run(ReadoutCost& cost, int slots) {
     return run;
 }
 
-ChipEvents cut_to(const ChipEvents& expected, ChipEvents events) {
-    for (const auto& [name, kind] : kKinds) {
-        std::ranges::sort(events.*kind);
-        auto& all = events.*kind;
-        all.resize(std::min(all.size(), (expected.*kind).size()));
-    }
-    return events;
-}
-
-std::string differences(const ChipEvents& expected, const ChipEvents& given) {
+std::string differences(const ChipEvents& expected, ChipEvents given) {
     std::string text;
     for (const auto& [name, kind] : kKinds) {
         const auto& wanted = expected.*kind;
-        const auto& had = given.*kind;
+        auto& had = given.*kind;
+        std::ranges::sort(had);
         const auto [a, b] = std::ranges::mismatch(wanted, had);
         if (a == wanted.end() && b == had.end()) continue;
         text += fmt::format("{} {}: ", name, a - wanted.begin());
@@ -115,9 +105,8 @@ std::vector<std::uint16_t> columns_of(const SamplePacket& packet, const Exposure
     return columns;
 }
 
-void write_image(const ExposureSchedule& schedule, const ChipSize& size,
-                 const std::filesystem::path& file) {
-    SequencerProgram small = compile_schedule(schedule);
+SequencerProgram program_for(const ExposureSchedule& schedule, const ChipSize& size, int offset) {
+    const SequencerProgram small = compile_schedule(schedule);
     if (size.tile_rows % small.tile_rows != 0 || size.tile_cols % small.tile_cols != 0 ||
         small.bits_per_pixel > size.pixel_bits || small.period_slots > size.depth)
         throw InputError("chip", "the program does not fit");
@@ -130,14 +119,15 @@ void write_image(const ExposureSchedule& schedule, const ChipSize& size,
     for (int slot = 0; slot < small.period_slots; ++slot)
         for (int row = 0; row < size.tile_rows; ++row)
             for (int col = 0; col < size.tile_cols; ++col) {
+                const int of = (slot + small.period_slots - offset) % small.period_slots;
                 const std::size_t at =
-                    (index(slot) * index(small.tile_rows) + index(row % small.tile_rows)) *
+                    (index(of) * index(small.tile_rows) + index(row % small.tile_rows)) *
                         index(small.tile_cols) +
                     index(col % small.tile_cols);
                 program.pixels.push_back(static_cast<std::uint8_t>(
                     small.pixels[at] | (always_open ? SequencerProgram::kOpen : 0U)));
             }
-    std::ofstream(file) << program_text({"test", program});
+    return program;
 }
 
 }  // namespace stipple

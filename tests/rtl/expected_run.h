@@ -6,6 +6,8 @@
 #include <vector>
 
 #include "core/exposure_schedule.h"
+#include "readout/program/sequencer_program.h"
+#include "readout/timing/readout_cost.h"
 #include "stream/sample_packet.h"
 #include "tests/rtl/chip_run.h"
 
@@ -20,11 +22,8 @@ struct ExpectedRun {
 /// By ReadoutCost. Precondition: nothing was added to it yet.
 [[nodiscard]] ExpectedRun expected_run(ReadoutCost& cost, int slots);
 
-/// `events` without those after the last expected one of each kind, in the order of clock and row.
-[[nodiscard]] ChipEvents cut_to(const ChipEvents& expected, ChipEvents events);
-
 /// Differences in words, one for each kind of event; empty if there are none.
-[[nodiscard]] std::string differences(const ChipEvents& expected, const ChipEvents& given);
+[[nodiscard]] std::string differences(const ChipEvents& expected, ChipEvents given);
 
 /// The bytes of a .stipple file: header, packets of samples, index and end marker.
 struct StreamBytes {
@@ -39,9 +38,10 @@ struct StreamBytes {
                                                     FrameShape shape, int row);
 
 /// The program of `schedule` for a chip whose tile and bits per pixel may be larger: the tile is
-/// repeated, and what the chip has more bits for is said. \throws InputError if the tile does not
-/// divide that of the chip or there are too many slots or bits.
-void write_image(const ExposureSchedule& schedule, const ChipSize& size,
-                 const std::filesystem::path& file);
+/// repeated, and what the chip has more bits for is said. It begins `offset` slots earlier.
+/// \throws InputError if the tile does not divide that of the chip or there are too many slots or
+/// bits.
+[[nodiscard]] SequencerProgram program_for(const ExposureSchedule& schedule, const ChipSize& size,
+                                           int offset = 0);
 
 }  // namespace stipple

@@ -9,7 +9,7 @@ from pathlib import Path
 
 SOURCES = sorted(str(path) for path in (Path(__file__).parents[2] / "rtl").glob("*.sv"))
 SMALL = {"ROWS": 4, "COLS": 8, "CHANNELS": 2, "TILE_ROWS": 4, "TILE_COLS": 4, "DEPTH": 4,
-         "DARK_ROWS": 1, "WORD_BYTES": 4, "WORDS": 16, "PACKETS": 4, "SETTLES": 2, "TABLE": 1}
+         "DARK_ROWS": 1, "WORD_BYTES": 4, "WORDS": 16, "PACKETS": 4}
 SIZES = [{}, SMALL,
          {"PIXEL_BITS": 3, "GROUP_ROWS": 2, "GROUP_COLS": 4, "COLUMNS_PER_ADC": 4},
          {"ROWS": 7, "COLS": 15, "CHANNELS": 5, "COLUMNS_PER_ADC": 3, "TILE_ROWS": 3, "TILE_COLS": 5,
@@ -66,11 +66,6 @@ class ToolsTest(unittest.TestCase):
             run = self.run_tool("vvp", "-N", "chip", "+schedule=image.mem")
             self.assertIn(message, run.stdout)
             self.assertEqual(run.returncode != 0, message != "", run.stdout)
-
-    @needs("iverilog", "iverilog")
-    def test_a_chip_without_a_schedule_is_refused(self):
-        self.run_tool("iverilog", "-g2012", "-s", "stipple_chip", "-o", "chip", *SOURCES)
-        self.assertIn("no schedule", self.run_tool("vvp", "-N", "chip").stdout)
 
 
 if __name__ == "__main__":
