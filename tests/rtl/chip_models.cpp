@@ -8,10 +8,12 @@
 #include <algorithm>
 #include <array>
 #include <bit>
+#include <cstdlib>
 #include <cstring>
 #include <memory>
 #include <random>
 #include <string>
+#include <typeinfo>
 #include <utility>
 
 #include "core/index.h"
@@ -57,7 +59,17 @@ class VerilatedChip : public ChipSimulation {
     }
     VerilatedChip(const VerilatedChip&) = delete;
     VerilatedChip& operator=(const VerilatedChip&) = delete;
-    ~VerilatedChip() override { chip_->final(); }
+    ~VerilatedChip() override {
+        chip_->final();
+#if VM_COVERAGE
+        static int chips = 0;
+        const char* folder = std::getenv("STIPPLE_RTL_COVERAGE");
+        if (folder != nullptr)
+            context_.coveragep()->write(
+                (std::string(folder) + "/" + typeid(Chip).name() + std::to_string(chips++) + ".dat")
+                    .c_str());
+#endif
+    }
 
     std::optional<std::uint32_t> read(std::uint32_t address) override {
         chip_->s_axil_araddr = static_cast<std::uint16_t>(address);
