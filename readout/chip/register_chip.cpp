@@ -56,6 +56,8 @@ RegisterChip::RegisterChip(SensorSetup setup, const ChipGeometry& geometry, Chip
 }
 
 void RegisterChip::preset() {
+    if (const auto why = store_problem(setup_.schedule.schedule, setup_.params.charge_stores))
+        throw InputError("schedule " + setup_.schedule.name, *why);
     const SequencerProgram program = compile_schedule(setup_.schedule.schedule);
     banks_.load(0, program);
     const SlotBudget budget{slot_clocks(*setup_.timing, setup_.params.slot_us), setup_.overrun};
