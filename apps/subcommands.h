@@ -31,6 +31,7 @@ void set_action(
 
 void add_synth(Command& app, Action& action);     ///< a scene rendered to footage
 void add_emulate(Command& app, Action& action);   ///< footage to sample stream
+void add_chip(Command& app, Action& action);      ///< a chip that is driven through registers
 void add_import(Command& app, Action& action);    ///< measurements and masks to sample stream
 void add_decode(Command& app, Action& action);    ///< sample stream to video
 void add_join(Command& app, Action& action);      ///< windows of parts to video

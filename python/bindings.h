@@ -14,6 +14,7 @@ void bind_sensor(py::module_& module);
 void bind_schedule(py::module_& module);
 void bind_stream(py::module_& module);
 void bind_emulate(py::module_& module);
+void bind_chip(py::module_& module);
 void bind_decode(py::module_& module);
 void bind_compare(py::module_& module);
 void bind_explore(py::module_& module);

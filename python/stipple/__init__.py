@@ -10,6 +10,7 @@ ValueError, errors of files OSError, both with the program's texts."""
 
 from . import capture
 from ._characterize import characterize, characterize_images
+from ._chip import Chip
 from ._explore import explore
 from ._pipeline import Schedule, compare, decode, decode_methods, emulate, load, timing
 from ._stipple import (
@@ -26,6 +27,7 @@ from ._stipple import (
 from ._view import View, view
 
 __all__ = [
+    "Chip",
     "ComparedVideos",
     "Frame",
     "MaxMemory",
