@@ -1,3 +1,4 @@
+#include <Vchip_firmware.h>
 #include <Vchip_group.h>
 #include <Vchip_one.h>
 #include <Vchip_paper.h>
@@ -79,6 +80,7 @@ class VerilatedChip : public ChipSimulation {
         clock();
         return is_good;
     }
+    void set_stream_crc(std::uint32_t crc) override { chip_->stream_crc = crc; }
     void wait(std::int64_t count) override {
         for (std::int64_t i = 0; i < count; ++i) clock();
     }
@@ -160,6 +162,7 @@ std::span<const ChipModel> chip_models() {
         {"small", small_size, make_chip<Vchip_small>},
         {"group", group_size, make_chip<Vchip_group>},
         {"one", one_size, make_chip<Vchip_one>},
+        {"firmware", firmware_size, make_chip<Vchip_firmware>},
     };
     return kModels;
 }
