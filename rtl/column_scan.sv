@@ -49,4 +49,27 @@ module column_scan #(
             if (begins) left <= clocks - 1'b1;
             else if (left != '0) left <= left - 1'b1;
         end
+
+`ifdef STIPPLE_ASSERT
+    // Each column of a row begins once, columns of a lane one after another.
+    logic [COLS-1:0] wanted, had;
+    logic has_row;
+    always_ff @(posedge clk)
+        if (rst) begin
+            wanted <= '0;
+            had <= '0;
+            has_row <= 1'b0;
+        end else begin
+            wanted <= start ? columns : wanted;
+            had <= (start ? '0 : had) | begun;
+            has_row <= has_row || start;
+            assert (!start || is_over);
+            assert ((begun & ~(start ? columns : wanted)) == '0);
+            assert (start || (begun & had) == '0);
+            assert (!is_over || had == wanted);
+            for (int i = 0; i < PER_LANE; i = i + 1)
+                for (int j = 0; j < i; j = j + 1) 
+                    assert ((begun[i*LANES+:LANES] & begun[j*LANES+:LANES]) == '0);
+        end
+`endif
 endmodule

@@ -36,4 +36,15 @@ module fifo #(
             if (pop) popped <= popped + 1'b1;
         end
     end
+
+`ifdef STIPPLE_ASSERT
+    logic lost;  // an item was
+    always_ff @(posedge clk) begin
+        lost <= !rst && (lost || overflow);
+        if (!rst) begin
+            assert (!pop || valid);
+            assert (lost || pushed - popped <= (BITS + 1)'(DEPTH));
+        end
+    end
+`endif
 endmodule

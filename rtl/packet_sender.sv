@@ -130,4 +130,58 @@ module packet_sender #(
                     end
                 endcase
         end
+
+`ifdef STIPPLE_ASSERT
+    // The rules of AXI-Stream, and the packets by a serial CRC of the bytes that leave.
+    function automatic logic [31:0] serial_crc(input logic [31:0] crc_before, input logic [8*WORD_BYTES-1:0] data,
+                                               input logic [WORD_BYTES-1:0] keep);
+        logic feedback;
+        serial_crc = crc_before;
+        for (int i = 0; i < 8 * WORD_BYTES; i = i + 1)
+            if (keep[i/8]) begin
+                feedback = serial_crc[31] ^ data[i];
+                serial_crc = {serial_crc[30:0], 1'b0} ^ (feedback ? 32'h1EDC_6F41 : 32'd0);
+            end
+    endfunction
+    function automatic logic [31:0] reversed(input logic [31:0] value);
+        for (int i = 0; i < 32; i = i + 1) reversed[i] = value[31-i];
+    endfunction
+
+    logic waited, held_last;
+    logic [8*WORD_BYTES-1:0] held_data;
+    logic [WORD_BYTES-1:0] held_keep;
+    logic [31:0] sent, sent_now, serial, serial_now, pushed, pushed_now;
+    always_comb begin
+        sent_now = sent;
+        for (int i = 0; i < WORD_BYTES; i = i + 1) sent_now = sent_now + 32'(m_axis_tkeep[i]);
+    end
+    assign serial_now = serial_crc(serial, m_axis_tdata, m_axis_tkeep);
+    assign pushed_now = pushed + 32'(word_valid);
+    always_ff @(posedge clk) begin
+        {held_data, held_keep, held_last} <= {m_axis_tdata, m_axis_tkeep, m_axis_tlast};
+        waited <= !rst && m_axis_tvalid && !m_axis_tready;
+        pushed <= rst || packet_valid ? '0 : pushed_now;
+        sent   <= rst || (is_sent && m_axis_tlast) ? '0 : is_sent ? sent_now : sent;
+        serial <= rst || (is_sent ? m_axis_tlast : sent == '0) ? ~reversed(stream_crc)
+                : !is_sent ? serial : part == HEADER_CRC ? '1 : serial_now;
+        if (!rst) begin
+            if (packet_valid)
+                assert (pushed_now == (packet_bytes + 32'(WORD_BYTES - 1)) / 32'(WORD_BYTES));
+            if (waited)
+                assert (m_axis_tvalid && held_data == m_axis_tdata && held_keep == m_axis_tkeep &&
+                        held_last == m_axis_tlast);
+            if (m_axis_tvalid) begin
+                assert (m_axis_tkeep[0] && (m_axis_tkeep & (m_axis_tkeep + 1'b1)) == '0);
+                assert (part == HEADER_CRC || m_axis_tlast || m_axis_tkeep == '1);
+                assert ((sent == 32'd32) == (part == HEADER_CRC));
+                assert (m_axis_tlast == (sent >= 32'd32 && sent_now == 32'd36 + bytes));
+`ifndef FORMAL  // solvers do not come to an end with long CRCs
+                if (sent == 32'd32) assert (m_axis_tdata[31:0] == ~reversed(serial));
+                if (sent > 32'd32 && m_axis_tlast) assert (~reversed(serial_now) == payload_crc);
+                if (sent == 32'd32 && m_axis_tlast) assert (payload_crc == '0);
+`endif
+            end
+        end
+    end
+`endif
 endmodule

@@ -78,4 +78,17 @@ module row_convert #(
         rested <= convert_end ? CLOCK_BITS'(1) : rested + 1'b1;
         if (select) held_columns <= columns;
     end
+
+`ifdef STIPPLE_ASSERT
+    logic has_row;  // that is selected and not ready yet
+    always_ff @(posedge clk)
+        if (rst) begin
+            has_row <= 1'b0;
+        end else begin
+            has_row <= select || (has_row && !row_ready);
+            assert (!select || !has_row || row_ready);
+            assert (!convert_end || is_busy);
+            assert (!row_ready || has_row);
+        end
+`endif
 endmodule

@@ -202,4 +202,30 @@ module row_readout #(
             held_convert_clocks <= convert_clocks;
         end
     end
+
+`ifdef STIPPLE_ASSERT
+    localparam int PLACES = 2 ** PLACE_BITS;
+    // Rows that are selected and not done; each is done once.
+    logic [PLACES-1:0] under_way, done_now;
+    logic is_twice;
+    always_comb begin
+        done_now = '0;
+        is_twice = 1'b0;
+        for (int i = 0; i < TIMERS; i = i + 1)
+            if (row_done[i]) begin
+                is_twice = is_twice || done_now[row_done_row[i*PLACE_BITS+:PLACE_BITS]];
+                done_now[row_done_row[i*PLACE_BITS+:PLACE_BITS]] = 1'b1;
+            end
+    end
+    always_ff @(posedge clk)
+        if (rst) begin
+            under_way <= '0;
+        end else begin
+            under_way <= (under_way & ~done_now) | (select ? PLACES'(1) << select_row : '0);
+            assert ((done_now & ~under_way) == '0);
+            assert (!is_twice);
+            assert (!select || may_select);
+            assert (!scan_over || (under_way & ~done_now) == '0);
+        end
+`endif
 endmodule

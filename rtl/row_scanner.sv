@@ -75,4 +75,31 @@ module row_scanner #(
         held_age <= age + WAIT_BITS'(age != '1);
         held_next_place <= select ? place + 1'b1 : next_place;
     end
+
+`ifdef STIPPLE_ASSERT
+    // Each row of a slot is selected once, in order, before the scan is over.
+    logic [PLACES-1:0] wanted, held_wanted, had, held_had, selected;
+    logic [PLACE_BITS-1:0] last;
+    assign wanted   = scan_start ? {slot_rows, dark[DARK_ROWS-1:0]} : held_wanted;
+    assign had      = scan_start ? '0 : held_had;
+    assign selected = select ? PLACES'(1) << place : '0;
+    always_ff @(posedge clk)
+        if (rst) begin
+            held_wanted <= '0;
+            held_had <= '0;
+        end else begin
+            held_wanted <= wanted;
+            held_had <= had | selected;
+            if (select) begin
+                last <= place;
+                assert ((selected & wanted) != '0);
+                assert ((selected & had) == '0);
+                assert (had == '0 || place > last);
+                assert (skipped == place - (had == '0 ? PLACE_BITS'(DARK_ROWS) - dark_rows
+                                                      : last + 1'b1));
+                assert (is_last == ((had | selected) == wanted));
+            end
+            if (scan_start || (is_scanning && scan_over)) assert (held_had == held_wanted);
+        end
+`endif
 endmodule

@@ -115,4 +115,19 @@ module row_transfer #(
         sent_io <= transfer ? '0 : sent_io + CLOCK_BITS'(is_sent);
         rested <= transfer_end ? CLOCK_BITS'(1) : rested + 1'b1;
     end
+
+`ifdef STIPPLE_ASSERT
+    // Rows that are ready and have not left: no more than two latches. None is lost.
+    logic [2:0] in_latches;
+    always_ff @(posedge clk)
+        if (rst) begin
+            in_latches <= '0;
+        end else begin
+            in_latches <= in_latches + 3'(row_ready) - 3'(link_free);
+            assert (in_latches + 3'(row_ready) - 3'(link_free) <= 3'd2);
+            assert (!link_free || in_latches != '0);
+            assert (!transfer || channels_are_over);
+            assert (!unused_overflow);
+        end
+`endif
 endmodule

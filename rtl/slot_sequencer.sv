@@ -82,4 +82,13 @@ module slot_sequencer #(
             if (takes) next_slot <= other_period;
             is_over <= is_over || is_due;
         end
+
+`ifdef STIPPLE_ASSERT
+    // Rows that wait are due in no slot that begins, if slots are stretched.
+    always_ff @(posedge clk)
+        if (!rst && slot_start && has_begun) begin
+            assert (counted >= slot_clocks);
+            assert (!stretches || (waits & ~rows_done & next_rows) == '0);
+        end
+`endif
 endmodule
