@@ -1,6 +1,6 @@
-/* Firmware of a small chip: sets its timing, fills both banks of the schedule memory, takes a single
-   shot, then a capture that goes over from one bank to the other. It knows the chip by its registers
-   alone, so it runs on the emulated chip and on the chip in gates. */
+/* Firmware of a small chip: sets its timing, fills both banks of the schedule memory, takes a
+   single shot, then a capture that goes over from one bank to the other. It knows the chip by its
+   registers alone, so it runs on the emulated chip and on the chip in gates. */
 #include "firmware.h"
 
 #include <stdint.h>
@@ -69,7 +69,7 @@ static int wait_for(uint32_t bits, uint32_t value) {
     return 0;
 }
 
-static void print_counters(const char *title) {
+static void print_counters(const char* title) {
     printf("%s: %u slots, %u packets, %u samples, %u overruns, swap at slot %u\n", title,
            (unsigned)reg_read(STIPPLE_SLOT_COUNT), (unsigned)reg_read(STIPPLE_PACKET_COUNT),
            (unsigned)reg_read(STIPPLE_SAMPLE_COUNT), (unsigned)reg_read(STIPPLE_OVERRUN_COUNT),

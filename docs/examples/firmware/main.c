@@ -5,7 +5,7 @@
 #include "firmware.h"
 #include "pipe_bus.h"
 
-int main(int argc, char *argv[]) {
+int main(int argc, char* argv[]) {
     if (argc < 3 || strcmp(argv[1], "--") != 0) {
         fprintf(stderr, "usage: firmware -- COMMAND ...\n");
         return 2;

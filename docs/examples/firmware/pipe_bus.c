@@ -1,4 +1,5 @@
-/* Speaks the protocol of docs/chip.md with a program that it starts: stipple chip, or a simulation. */
+/* Speaks the protocol of docs/chip.md with a program that it starts: stipple chip, or a simulation.
+ */
 #include "pipe_bus.h"
 
 #include <inttypes.h>
@@ -11,16 +12,16 @@
 
 #include "bus.h"
 
-static FILE *requests;
-static FILE *answers;
+static FILE* requests;
+static FILE* answers;
 static pid_t chip;
 
-static void fail(const char *what) {
+static void fail(const char* what) {
     fprintf(stderr, "bus: %s\n", what);
     exit(3);
 }
 
-void bus_open(char *const command[]) {
+void bus_open(char* const command[]) {
     int to_chip[2], from_chip[2];
     if (pipe(to_chip) != 0 || pipe(from_chip) != 0) fail("no pipe");
     chip = fork();
@@ -52,7 +53,7 @@ int bus_close(void) {
 }
 
 /* The answer to the request that was printed. */
-static const char *answer(void) {
+static const char* answer(void) {
     static char line[256];
     if (fflush(requests) != 0 || fgets(line, sizeof line, answers) == NULL)
         fail("the chip does not answer");

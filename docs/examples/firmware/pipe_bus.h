@@ -2,6 +2,6 @@
 #pragma once
 
 /* Starts a program, `command` as of execvp. Ends this one with a message if that fails. */
-void bus_open(char *const command[]);
+void bus_open(char* const command[]);
 /* Ends the program, and returns its exit code. */
 int bus_close(void);
