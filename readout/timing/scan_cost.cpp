@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cstddef>
+#include <iterator>
 
 #include "core/index.h"
 #include "core/named_value.h"
@@ -79,8 +80,8 @@ std::vector<bool> open_phases(const ExposureSchedule& schedule) {
 void add_deadline(ScanDeadline added, std::vector<ScanDeadline>& deadlines) {
     const auto at = std::ranges::lower_bound(deadlines, added.slots, {}, &ScanDeadline::slots);
     if (at != deadlines.end() && at->slots == added.slots)
-        at->end = added.end;  // rows are added in the order in which they are read
-    else
+        at->end = std::max(at->end, added.end);  // ADCs that convert less can be done earlier
+    else if (at == deadlines.begin() || std::prev(at)->end < added.end)
         deadlines.insert(at, added);
     std::erase_if(deadlines, [&](const ScanDeadline& other) {
         return other.slots > added.slots && other.end <= added.end;

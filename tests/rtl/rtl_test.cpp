@@ -142,31 +142,15 @@ Comparison random_comparison(const ChipModel& chip, const ExposureSchedule& sche
     return it;
 }
 
-/// The end of a row's time is before that of an earlier row: its ADCs convert fewer columns. The
-/// timers of the chip then are not the model's.
-bool rows_end_out_of_order(const Comparison& it) {
-    ReadoutCost cost(it.timing, it.schedule, it.window, {});
-    for (int slot = 0; slot < it.slots; ++slot) {
-        const SlotCost slot_cost = cost.add_next();
-        if (!std::ranges::is_sorted(cost.times(slot, slot_cost).rows, {}, &RowTimes::frame_end))
-            return true;
-    }
-    return false;
-}
-
 TEST(RtlTest, RunsRandomSensorsAndSchedulesAsTheModelClockByClock) {
     const TemporaryFolder folder;
     constexpr std::uint32_t kRuns = 200;
-    int runs = 0, refused = 0, overruns = 0, dropped = 0, laws[3] = {};
-    for (std::uint32_t seed = 0; runs < static_cast<int>(kRuns); ++seed) {
+    int overruns = 0, dropped = 0, laws[3] = {};
+    for (std::uint32_t seed = 0; seed < kRuns; ++seed) {
         Draw draw(seed);
         const ChipModel& chip = chip_models()[seed % chip_models().size()];
         const ExposureSchedule schedule = schedule_for(chip.size, seed, draw);
         const Comparison it = random_comparison(chip, schedule, draw);
-        if (rows_end_out_of_order(it)) {
-            ++refused;
-            continue;
-        }
         const auto packets = draw_packets(it, folder / "a.stipple", draw);
         ASSERT_EQ(it.differences_from(packets, folder / "a.stipple", seed), "")
             << "seed " << seed << ", chip " << chip.name;
@@ -175,12 +159,10 @@ TEST(RtlTest, RunsRandomSensorsAndSchedulesAsTheModelClockByClock) {
             dropped += packet.flags == SamplePacket::kDropped ? 1 : 0;
         }
         ++laws[static_cast<int>(it.timing.row_timing)];
-        ++runs;
     }
-    EXPECT_LT(refused, runs / 4);
-    EXPECT_GT(overruns, runs);
-    EXPECT_GT(dropped, runs / 2);
-    for (const int law : laws) EXPECT_GT(law, runs / 5);
+    EXPECT_GT(overruns, 200);
+    EXPECT_GT(dropped, 100);
+    for (const int law : laws) EXPECT_GT(law, 40);
 }
 
 /// Light that differs from pixel to pixel and from slot to slot.
