@@ -3,9 +3,9 @@
 #include <chip_file_parts.h>
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <array>
 #include <bit>
-#include <cmath>
 #include <utility>
 
 #include "core/error.h"

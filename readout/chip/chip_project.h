@@ -5,7 +5,7 @@
 #include <fstream>
 #include <span>
 #include <string>
-#include <vector>
+#include <string_view>
 
 #include "readout/chip/chip_parameters.h"
 #include "readout/chip/chip_settings.h"

@@ -67,7 +67,7 @@ void convert(const fs::path& vcd, const fs::path& fst, const fs::path& final_pat
 WaveformFile::WaveformFile(const fs::path& file, bool force)
     : output_(file, force), view_(with_extension(file, ".gtkw"), force) {
     if (lower_extension(file) != ".fst") return;
-    run_converter({"--help"});
+    run_converter({"-h"});  // or the work would be in vain
     // With force, because this name is only that of a hidden file.
     vcd_.emplace(with_extension(file, ".vcd"), true);
 }
