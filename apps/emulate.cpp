@@ -29,7 +29,7 @@
 #include "io/video_reader.h"
 #include "readout/coded_sensor.h"
 #include "readout/sensor_file.h"
-#include "readout/timing/waveform.h"
+#include "readout/timing/waveform_file.h"
 
 namespace stipple {
 namespace {

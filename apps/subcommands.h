@@ -40,6 +40,7 @@ void add_info(Command& app, Action& action);      ///< contents of a file of any
 void add_recover(Command& app, Action& action);   ///< partial outputs of killed runs
 void add_schedule(Command& app, Action& action);  ///< exposure schedules: its own subcommands
 void add_timing(Command& app, Action& action);    ///< how fast a sensor reads
+void add_rtl(Command& app, Action& action);       ///< the chip in gates for a sensor
 /// EMVA 1288 figures of an emulated sensor or of images
 void add_characterize(Command& app, Action& action);
 void add_calibrate(Command& app, Action& action);   ///< gain, offset and defects of each pixel

@@ -189,6 +189,15 @@ RegisterValues register_values(const ReadoutTiming& timing, FrameShape window, S
     return std::move(to.values);
 }
 
+RegisterValues capture_registers(const ChipCapture& capture, int bank) {
+    const auto place = static_cast<std::uint32_t>(4 * bank);
+    Writer to{register_values(capture.timing, capture.window, capture.budget)};
+    to.set(STIPPLE_BANK_PERIOD + place, capture.period_slots);
+    to.set(STIPPLE_BANK_OFFSET + place, capture.offset_slots);
+    to.set(STIPPLE_SLOTS, capture.slots);
+    return std::move(to.values);
+}
+
 CaptureSettings capture_settings(const RegisterValues& values, const ChipGeometry& geometry) {
     const Reader registers(values);
     CaptureSettings settings;

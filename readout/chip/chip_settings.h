@@ -41,6 +41,19 @@ using RegisterValues = std::map<std::uint32_t, std::uint32_t>;
 [[nodiscard]] RegisterValues register_values(const ReadoutTiming& timing, FrameShape window,
                                              SlotBudget budget);
 
+/// What a chip runs.
+struct ChipCapture {
+    ReadoutTiming timing;
+    FrameShape window;
+    SlotBudget budget;
+    int period_slots = 1;  ///< of the active bank
+    int offset_slots = 0;
+    int slots = 1;  ///< 0: until it is stopped
+};
+
+/// The registers that set up a capture from bank 0 or 1. \throws InputError as register_values.
+[[nodiscard]] RegisterValues capture_registers(const ChipCapture& capture, int bank);
+
 /// What these registers make a chip do in a capture.
 struct CaptureSettings {
     ReadoutTiming timing;

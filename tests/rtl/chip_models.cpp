@@ -58,7 +58,11 @@ class VerilatedChip : public ChipSimulation {
     }
     VerilatedChip(const VerilatedChip&) = delete;
     VerilatedChip& operator=(const VerilatedChip&) = delete;
-    ~VerilatedChip() override { chip_->final(); }
+    ~VerilatedChip() override {
+        chip_->final();
+        // Verilator takes the chip out of the context of the thread, which may be a later chip's.
+        Verilated::threadContextp(&context_);
+    }
 
     std::optional<std::uint32_t> read(std::uint32_t address) override {
         chip_->s_axil_araddr = static_cast<std::uint16_t>(address);
