@@ -15,6 +15,7 @@ void bind_schedule(py::module_& module);
 void bind_stream(py::module_& module);
 void bind_emulate(py::module_& module);
 void bind_decode(py::module_& module);
+void bind_forward_model(py::module_& module);
 void bind_compare(py::module_& module);
 void bind_explore(py::module_& module);
 void bind_timing(py::module_& module);

@@ -11,6 +11,7 @@ ValueError, errors of files OSError, both with the program's texts."""
 from . import capture
 from ._characterize import characterize, characterize_images
 from ._explore import explore
+from ._forward_model import ForwardModel
 from ._pipeline import Schedule, compare, decode, decode_methods, emulate, load, timing
 from ._stipple import (
     ComparedVideos,
@@ -27,6 +28,7 @@ from ._view import View, view
 
 __all__ = [
     "ComparedVideos",
+    "ForwardModel",
     "Frame",
     "MaxMemory",
     "PreviewFrame",
