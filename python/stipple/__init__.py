@@ -12,6 +12,7 @@ from . import capture
 from ._characterize import characterize, characterize_images
 from ._chip import Chip
 from ._explore import explore
+from ._forward_model import ForwardModel
 from ._pipeline import Schedule, compare, decode, decode_methods, emulate, load, timing
 from ._stipple import (
     ComparedVideos,
@@ -29,6 +30,7 @@ from ._view import View, view
 __all__ = [
     "Chip",
     "ComparedVideos",
+    "ForwardModel",
     "Frame",
     "MaxMemory",
     "PreviewFrame",
