@@ -69,6 +69,26 @@ double score_of(const ModelledSample& it) {
     return error + 0.5 * it.variance_slope * (error * error - 1 / it.variance);
 }
 
+/// Calls body(voxel, ModelledSample) for each sample if the light is x.
+template <typename Body>
+void for_each_sample(const ForwardModel& model, std::span<const float> x, const Body& body) {
+    const Measurements& m = model.measurements();
+    std::vector<float> mean(m.voxels()), variance(m.voxels());
+    model.forward(x, mean);
+    model.noise_variance(x, variance);
+    for (std::size_t i = 0; i < m.voxels(); ++i) {
+        if ((m.state[i] & Measurements::kLast) == 0) continue;
+        const float slope =
+            m.dark_variance.empty() ? model.noise().per_light() : m.variance_per_light[i];
+        const auto wide = [](float value) { return static_cast<double>(value); };
+        body(i, ModelledSample{.state = m.state[i],
+                               .y = wide(m.sum[i]),
+                               .mean = wide(mean[i]),
+                               .variance = wide(variance[i]),
+                               .variance_slope = mean[i] > 0 ? wide(slope) : 0.0});
+    }
+}
+
 }  // namespace
 
 ForwardModel::ForwardModel(Measurements measurements, const Calibration& calibration)
@@ -121,22 +141,6 @@ void ForwardModel::noise_variance(std::span<const float> x, std::span<float> var
     for (std::size_t i = 0; i < variance.size(); ++i)
         if ((measurements_.state[i] & Measurements::kLast) != 0)
             variance[i] = variance_of(i, variance[i]);
-}
-
-/// Calls body(voxel, ModelledSample) for each sample if the light is x.
-template <typename Body>
-void for_each_sample(const ForwardModel& model, std::span<const float> x, const Body& body) {
-    const Measurements& m = model.measurements();
-    std::vector<float> mean(m.voxels()), variance(m.voxels());
-    model.forward(x, mean);
-    model.noise_variance(x, variance);
-    for (std::size_t i = 0; i < m.voxels(); ++i) {
-        if ((m.state[i] & Measurements::kLast) == 0) continue;
-        const float slope =
-            m.dark_variance.empty() ? model.noise().per_light() : m.variance_per_light[i];
-        body(i, ModelledSample{m.state[i], m.sum[i], mean[i], variance[i],
-                               mean[i] > 0 ? slope : 0.0F});
-    }
 }
 
 double ForwardModel::log_likelihood(std::span<const float> x) const {
