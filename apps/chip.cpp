@@ -102,7 +102,7 @@ Request request_of(const std::vector<std::string>& words) {
     if (words.size() == 3 && words[0] == "w")
         return {'w', register_address(words[1]), register_value(words[2])};
     if (words.size() == 2 && words[0] == "t") return {.value = register_value(words[1])};
-    throw InputError("a request", "is r REGISTER, w REGISTER VALUE or t CLOCKS");
+    throw InputError("request", "is not r REGISTER, w REGISTER VALUE or t CLOCKS");
 }
 
 /// The answer to a request. \throws InputError, DeviceError as RegisterChip.

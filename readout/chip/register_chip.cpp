@@ -67,7 +67,8 @@ void RegisterChip::preset() {
 }
 
 std::string RegisterChip::read_problem(std::uint32_t address) const {
-    return register_at(address) == nullptr ? fmt::format("0x{:03X} is no register", address) : "";
+    return register_at(address) == nullptr ? fmt::format("0x{:03X} is not a register", address)
+                                           : "";
 }
 
 bool RegisterChip::is_locked(int bank) const {

@@ -81,12 +81,12 @@ std::uint32_t register_address(std::string_view text) {
     if (const auto address = named(text)) return *address;
     std::vector<std::string> names;
     for (const ChipRegister& it : kRegisters) names.emplace_back(it.name);
-    throw InputError(text, "is no register: " + suggestion(text, names));
+    throw InputError(text, "is not a register: " + suggestion(text, names));
 }
 
 std::uint32_t register_value(std::string_view text) {
     const auto value = number_of(text);
-    if (!value) throw InputError(text, "is no number of 32 bits, such as 68 or 0x44");
+    if (!value) throw InputError(text, "is not a number of 32 bits, such as 68 or 0x44");
     return *value;
 }
 

@@ -85,9 +85,9 @@ class ChipTest(ChipFolder):
 
     def test_requests_that_are_wrong_are_answered(self):
         for request, text in (("r STAUS", 'did you mean "STATUS"?'), ("r BANK_PERIOD[2]", "has the places 0 to 1"),
-                              ("w ROWS", "is r REGISTER, w REGISTER VALUE or t CLOCKS"), ("", "is r REGISTER"),
-                              ("w ROWS x", "is no number of 32 bits"), ("w ROWS 70000", "has 16 bits, at most 65535"),
-                              ("w ID 1", "is read-only"), ("r 0x800", "is no register"), ("x" * 5000, "is r REGISTER"),
+                              ("w ROWS", "is not r REGISTER, w REGISTER VALUE or t CLOCKS"), ("", "is not r REGISTER"),
+                              ("w ROWS x", "is not a number of 32 bits"), ("w ROWS 70000", "has 16 bits, at most 65535"),
+                              ("w ID 1", "is read-only"), ("r 0x800", "is not a register"), ("x" * 5000, "is not r REGISTER"),
                               ("w MEMORY_ADDRESS 64", "ok")):
             answer = self.ask(request)[0]
             self.assertIn(text, answer)

@@ -42,8 +42,8 @@ TEST_F(ChipLimitsTest, AnAccessThatIsAnErrorChangesNothingElse) {
     };
     refused(STIPPLE_ROWS, 1U << 16U, "ROWS has 16 bits, at most 65535");
     refused(STIPPLE_ID, 1, "ID is read-only");
-    refused(0x3C, 1, "0x03C is no register");
-    refused(STIPPLE_CONTROL + 1, 1, "0x041 is no register");
+    refused(0x3C, 1, "0x03C is not a register");
+    refused(STIPPLE_CONTROL + 1, 1, "0x041 is not a register");
     set(chip, STIPPLE_MEMORY_ADDRESS, 0x80000000U + 16U * get(chip, STIPPLE_TILE_ROWS));
     refused(STIPPLE_MEMORY_DATA, 1, "a bank has");
     EXPECT_FALSE(chip.read(0x1000));
