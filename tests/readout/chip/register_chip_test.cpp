@@ -118,8 +118,9 @@ void load(RegisterChip& chip, const ExposureSchedule& schedule, std::uint32_t ba
 ExposureSchedule rotated(const ExposureSchedule& schedule, std::int64_t first) {
     SequencerProgram program = compile_schedule(schedule);
     const auto slot = static_cast<std::ptrdiff_t>(program.tile_rows * program.tile_cols);
-    std::ranges::rotate(program.pixels,
-                        program.pixels.begin() + slot * (first % program.period_slots));
+    std::rotate(program.pixels.begin(),
+                program.pixels.begin() + slot * (first % program.period_slots),
+                program.pixels.end());
     return schedule_of(program, "rotated");
 }
 
