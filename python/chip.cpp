@@ -61,8 +61,8 @@ OpenLight light_of(ChipLight light, double slot_us) {
 /// A chip, its sensor and schedule.
 class PythonChip {
   public:
-    PythonChip(ChipLight light, const std::filesystem::path& output, bool force, SensorSetup setup,
-               const ChipMemory& memory, const FootageOrigin& origin)
+    PythonChip(ChipLight light, const std::filesystem::path& output, bool force,
+               const SensorSetup& setup, const ChipMemory& memory, const FootageOrigin& origin)
         : chip_(setup, geometry_for(setup, memory),
                 {.output = output,
                  .force = force,

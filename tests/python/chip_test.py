@@ -51,7 +51,7 @@ class ChipTest(ProgramTest):
         chip = self.chip("a.stipple", blank=True, tile=(8, 12), depth=20, pixel_bits=2)
         self.assertEqual([chip.read(name) for name in ("TILE_ROWS", "TILE_COLS", "DEPTH", "PIXEL_BITS", "ROWS")],
                          [8, 12, 20, 2, 0])
-        for access, text in ((lambda: chip.read("STAUS"), "STATUS"), (lambda: chip.read(0x800), "no register"),
+        for access, text in ((lambda: chip.read("STAUS"), "STATUS"), (lambda: chip.read(0x800), "is not a register"),
                              (lambda: chip.write("ID", 1), "read-only"), (lambda: chip.write("ROWS", 70000), "16 bits"),
                              (lambda: chip.write("ROWS", 1 << 32), "32 bits"), (lambda: chip.read(-1), "register"),
                              (lambda: self.chip("b.stipple", tile=(5, 4)), "divide"),
