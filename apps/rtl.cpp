@@ -34,7 +34,7 @@ struct RtlOptions {
 
 /// A size that simulates in seconds: 16 rows of about 32 columns.
 FrameShape small_size(const ReadoutTiming& timing) {
-    const int step = std::lcm(std::max(timing.addressing.channels, 1), timing.columns_per_adc);
+    const int step = std::max(1, std::lcm(timing.addressing.channels, timing.columns_per_adc));
     const int cols = (32 + step - 1) / step * step;
     return {.rows = std::min(16, timing.rows), .cols = std::min(cols, timing.cols), .planes = 1};
 }
