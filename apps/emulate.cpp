@@ -29,7 +29,7 @@
 #include "io/video_reader.h"
 #include "readout/coded_sensor.h"
 #include "readout/sensor_file.h"
-#include "readout/timing/waveform.h"
+#include "readout/timing/waveform_file.h"
 
 namespace stipple {
 namespace {
@@ -146,6 +146,11 @@ void add_rig(Command& command, EmulateArguments& arguments) {
                  "change a key of the sensor, of the schedule or of the rig");
 }
 
+void check_waveform(const EmulateArguments& options) {
+    if (!options.waveform.file.empty() && !options.switches.empty())
+        throw UsageError("--vcd", "shows one schedule; leave out --switch, or this");
+}
+
 void warn_of_tone_mapped(const std::string& truth) {
     if (is_video_name(truth) || is_pipe(truth))
         say_warning(
@@ -215,6 +220,7 @@ void add_emulate(Command& app, Action& action) {
     set_action(command, action, options, emulate_all_or_part, [command, options] {
         options->source.reading.at_their_times = options->source.resampling.has_value();
         check_rig(command, *options);
+        check_waveform(*options);
         if (options->part.count > 0) check_part(command, *options);
     });
 }

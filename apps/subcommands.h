@@ -31,6 +31,7 @@ void set_action(
 
 void add_synth(Command& app, Action& action);     ///< a scene rendered to footage
 void add_emulate(Command& app, Action& action);   ///< footage to sample stream
+void add_chip(Command& app, Action& action);      ///< a chip that is driven through registers
 void add_import(Command& app, Action& action);    ///< measurements and masks to sample stream
 void add_decode(Command& app, Action& action);    ///< sample stream to video
 void add_join(Command& app, Action& action);      ///< windows of parts to video
@@ -39,6 +40,7 @@ void add_info(Command& app, Action& action);      ///< contents of a file of any
 void add_recover(Command& app, Action& action);   ///< partial outputs of killed runs
 void add_schedule(Command& app, Action& action);  ///< exposure schedules: its own subcommands
 void add_timing(Command& app, Action& action);    ///< how fast a sensor reads
+void add_rtl(Command& app, Action& action);       ///< the chip in gates for a sensor
 /// EMVA 1288 figures of an emulated sensor or of images
 void add_characterize(Command& app, Action& action);
 void add_calibrate(Command& app, Action& action);   ///< gain, offset and defects of each pixel

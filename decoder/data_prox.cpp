@@ -55,7 +55,7 @@ Slice slice(const Measurements& m, const SiteRun& run, std::size_t slot, const A
 /// `correction` is (y - sum w v) / (variance + sum w^2 step) where an exposure ends, else anything.
 /// With duals v has the part of the last one, which is taken out first: `correction` is the
 /// increase of the dual.
-template <Chain kChain, bool kWeighted, bool kDual>
+template <Chain kChain, bool kWeighted, bool kDual, bool kZeroIsBound>
 void add_up(const Slice& s, float* HWY_RESTRICT sum_v, float* HWY_RESTRICT sum_step,
             float* HWY_RESTRICT correction) {
     const std::uint8_t* HWY_RESTRICT states = s.state;
@@ -68,7 +68,8 @@ void add_up(const Slice& s, float* HWY_RESTRICT sum_v, float* HWY_RESTRICT sum_s
         sum_step[i] = keep * sum_step[i] + (kWeighted ? open * weight : open) * s.step[i];
         const float before = kDual ? s.dual[i] : 0.0F;
         const float missing = kDual ? s.y[i] - sum_v[i] + before * sum_step[i] : s.y[i] - sum_v[i];
-        const bool explained = (state & Measurements::kSaturated) != 0 && missing < 0;
+        const bool explained = ((state & Measurements::kSaturated) != 0 && missing < 0) ||
+                               (kZeroIsBound && (state & Measurements::kZero) != 0 && missing > 0);
         const float dual = explained ? 0.0F : missing / (s.variance[i] + sum_step[i]);
         correction[i] = kDual ? dual - before : dual;
         if (kDual) s.dual[i] = (state & Measurements::kLast) != 0 ? dual : before;
@@ -89,7 +90,7 @@ void distribute(const Slice& s, const float* HWY_RESTRICT ending, float* HWY_RES
     }
 }
 
-template <Chain kChain, bool kWeighted, bool kDual>
+template <Chain kChain, bool kWeighted, bool kDual, bool kZeroIsBound = false>
 void prox_chain(const Measurements& m, const SiteRun& run, const Arrays& arrays) {
     const auto slots = static_cast<std::size_t>(m.slots);
     // 128 KB, of which each slot uses a row: to zero all would take longer than the sums.
@@ -97,8 +98,8 @@ void prox_chain(const Measurements& m, const SiteRun& run, const Arrays& arrays)
     float sum_v[kMaxRunSites] = {};
     float sum_step[kMaxRunSites] = {};
     for (std::size_t slot = 0; slot < slots; ++slot)
-        add_up<kChain, kWeighted, kDual>(slice<kWeighted, kDual>(m, run, slot, arrays), sum_v,
-                                         sum_step, ending[slot]);
+        add_up<kChain, kWeighted, kDual, kZeroIsBound>(
+            slice<kWeighted, kDual>(m, run, slot, arrays), sum_v, sum_step, ending[slot]);
     float correction[kMaxRunSites] = {};
     for (std::size_t slot = slots; slot-- > 0;)
         distribute<kChain, kWeighted>(slice<kWeighted, kDual>(m, run, slot, arrays), ending[slot],
@@ -117,7 +118,10 @@ void add_duals(const Measurements& m, const SiteRun& run, const Arrays& arrays) 
 
 void prox_run(const Measurements& m, const SiteRun& run, const float* step, float* v) {
     for_each_chain(m, [&](auto chain, auto weighted) {
-        prox_chain<chain(), weighted(), false>(m, run, {step, v, nullptr});
+        if (m.zero_is_bound)
+            prox_chain<chain(), weighted(), false, true>(m, run, {step, v, nullptr});
+        else
+            prox_chain<chain(), weighted(), false>(m, run, {step, v, nullptr});
     });
 }
 

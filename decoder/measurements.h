@@ -60,6 +60,9 @@ struct Measurements {
     /// If several sensors see the scene (docs/rig.md): the samples of the others, in the same
     /// window. All of them have `dark_variance` and `lsb_light`, and none has others of its own.
     std::vector<Measurements> others = {};
+    /// The proximal map takes a sample of DN 0 as a bound: the light is `sum` or less.
+    bool zero_is_bound = false;
+
     float lsb_light = 0;  ///< light of one DN, of a sensor among several; otherwise 0
 
     [[nodiscard]] float weight_at(std::size_t voxel) const {

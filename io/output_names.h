@@ -40,8 +40,8 @@ constexpr OutputName kDifferenceName{
     {".png", ".npy"}};
 constexpr OutputName kTableName{"a table is a .csv, or has a name without extension", {".csv"}};
 constexpr OutputName kPreviewName{"a preview is a .png or a .npy", {".png", ".npy"}, false};
-constexpr OutputName kWaveformName{"a waveform is a .vcd, or has a name without extension",
-                                   {".vcd"}};
+constexpr OutputName kWaveformName{"a waveform is a .vcd or .fst, or has a name without extension",
+                                   {".vcd", ".fst"}};
 constexpr OutputName kScheduleName{"a schedule is a .toml, or has a name without extension",
                                    {".toml"}};
 constexpr OutputName kProgramName{"a memory image is a .mem or a .hex", {".mem", ".hex"}, false};

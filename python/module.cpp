@@ -32,7 +32,9 @@ PYBIND11_MODULE(_stipple, module) {
     bind_schedule(module);
     bind_stream(module);
     bind_emulate(module);
+    bind_chip(module);
     bind_decode(module);
+    bind_forward_model(module);
     bind_compare(module);
     bind_explore(module);
     bind_timing(module);

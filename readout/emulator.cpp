@@ -59,6 +59,7 @@ void Emulator::switch_to(const SensorSetup& next) {
     check_switch(setup_, next, stats().slots);
     schedules_.push_back(next.schedule.schedule);
     sensor_.switch_to(next.params, schedules_.back());
+    if (readout_cost_) readout_cost_->switch_to(schedules_.back());
 }
 
 /// Behind colour filters and a grey mask.
@@ -81,6 +82,11 @@ std::span<const SamplePacket> Emulator::expose(std::span<const float> frame) {
     sensor_.expose(light_on_pixels(frame), packets_[0]);
     return readout_cost_ ? split_at_overrun(readout_cost_->add_next())
                          : std::span(packets_).first(1);
+}
+
+std::span<const SamplePacket> Emulator::expose(std::span<const float> frame, const SlotCost& slot) {
+    sensor_.expose(light_on_pixels(frame), packets_[0]);
+    return split_at_overrun(slot);
 }
 
 const SamplePacket& Emulator::expose_unread(std::span<const float> frame) {
@@ -123,9 +129,8 @@ std::span<const SamplePacket> Emulator::split_at_overrun(const SlotCost& slot) {
 }
 
 std::string no_switch_text(const SensorSetup& setup) {
-    if (setup.timing)
-        return "the sensor has a section [timing]; the readout of a schedule that changes is not "
-               "modelled";
+    if (setup.timing && setup.overrun == OverrunPolicy::kDrop)
+        return "the sensor drops late rows; with the policy stretch it can";
     const ExposureSchedule& schedule = setup.schedule.schedule;
     if (schedule.weighted() || schedule.interleaved())
         return fmt::format("the schedule {} has weights or interleaved exposures",
@@ -146,7 +151,8 @@ void check_switch(const SensorSetup& from, const SensorSetup& to, std::int64_t s
     same.read_noise_e = from.params.read_noise_e;
     same.photons_per_unit = from.params.photons_per_unit;
     same.physical.black_level_dn = from.params.physical.black_level_dn;
-    if (same != from.params || from.shape != to.shape || from.footage != to.footage)
+    if (same != from.params || from.shape != to.shape || from.footage != to.footage ||
+        from.timing != to.timing)
         refuse(
             "only schedule, seed, rounding, full_scale_e, full_well_e, read_noise_e, "
             "photons_per_unit and black_level_dn may change");

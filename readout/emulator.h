@@ -29,8 +29,8 @@ class Emulator {
     explicit Emulator(const SensorSetup& setup, std::int64_t first_slot = 0);
 
     /// From the next slot on, not the first one, the sensor has the schedule of `next` and the
-    /// values of its readout. Fixed patterns and noise remain those of the first setup. \throws
-    /// InputError as check_switch.
+    /// values of its readout. Fixed patterns and noise remain those of the first setup. With a
+    /// timing the slot before may be longer now (ReadoutCost). \throws InputError as check_switch.
     void switch_to(const SensorSetup& next);
 
     /// Exposes the next slot to `frame` (of the footage's shape, order (plane, row, col)), behind
@@ -38,6 +38,9 @@ class Emulator {
     /// packets of the slot, valid until the next call: one, or two if the last rows do not fit the
     /// slot and are dropped.
     [[nodiscard]] std::span<const SamplePacket> expose(std::span<const float> frame);
+    /// The same for a sensor without timing whose readout is known: `slot`.
+    [[nodiscard]] std::span<const SamplePacket> expose(std::span<const float> frame,
+                                                       const SlotCost& slot);
     /// The same for a slot whose samples are all dropped, which takes a fraction of the time. Its
     /// packet, valid until the next call.
     [[nodiscard]] const SamplePacket& expose_unread(std::span<const float> frame);
@@ -77,13 +80,13 @@ class Emulator {
     std::vector<float> masked_;           ///< light behind a grey mask
 };
 
-/// Why a sensor cannot switch at all: a section [timing], weights, interleaved exposures. Empty if
+/// Why a sensor cannot switch at all: it drops late rows, weights, interleaved exposures. Empty if
 /// it can.
 [[nodiscard]] std::string no_switch_text(const SensorSetup& setup);
 
 /// \throws InputError if a sensor cannot switch from one setup to the other between two slots: it
-/// has a section [timing], a schedule has weights or interleaved exposures, or other parameters
-/// differ than those of ReadoutValues. `slot` is for the message.
+/// drops late rows, a schedule has weights or interleaved exposures, or other parameters differ
+/// than those of ReadoutValues. `slot` is for the message.
 void check_switch(const SensorSetup& from, const SensorSetup& to, std::int64_t slot);
 
 /// What such a switch is in a stream; its slot and number are set by the StreamWriter.

@@ -17,33 +17,56 @@ StreamRecorder::StreamRecorder(const std::filesystem::path& file, const SensorSe
                                StreamRecorderOptions options)
     : output_(file, options.force),
       emulator_(std::make_unique<Emulator>(setup)),
-      writer_(output_.partial(), header_of(setup, options), output_.final_path().string()) {}
+      writer_(output_.partial(), header_of(setup, options), output_.final_path().string()),
+      holds_back_(options.may_switch && emulator_->readout_cost() != nullptr) {}
 
 StreamRecorder::~StreamRecorder() = default;
 
+void StreamRecorder::write_waiting() {
+    if (waiting_) writer_.write(*waiting_);
+    waiting_.reset();
+}
+
+std::span<const SamplePacket> StreamRecorder::written(std::span<const SamplePacket> packets) {
+    write_waiting();
+    for (const SamplePacket& packet : packets) {
+        if (holds_back_)
+            waiting_ = packet;  // the only one, as no rows are dropped
+        else
+            writer_.write(packet);
+        samples_ += packet.dn.size();
+    }
+    return packets;
+}
+
 ScheduleSwitch StreamRecorder::switch_to(const SensorSetup& next) {
     check_switch(emulator_->setup(), next, emulator_->stats().slots);
+    if (waiting_) {
+        const SlotCost slot = emulator_->readout_cost()->before_switch(next.schedule.schedule);
+        waiting_->flags = static_cast<std::uint8_t>((waiting_->flags & ~SamplePacket::kOverrun) |
+                                                    (slot.overrun ? SamplePacket::kOverrun : 0));
+    }
+    write_waiting();
     const ScheduleSwitch& written = writer_.switch_schedule(switch_of(next));
     emulator_->switch_to(next);
     return written;
 }
 
 std::span<const SamplePacket> StreamRecorder::expose(std::span<const float> frame) {
-    const auto packets = emulator_->expose(frame);
-    for (const SamplePacket& packet : packets) {
-        writer_.write(packet);
-        samples_ += packet.dn.size();
-    }
-    return packets;
+    return written(emulator_->expose(frame));
+}
+
+std::span<const SamplePacket> StreamRecorder::expose(std::span<const float> frame,
+                                                     const SlotCost& slot) {
+    return written(emulator_->expose(frame, slot));
 }
 
 std::span<const SamplePacket> StreamRecorder::expose_unread(std::span<const float> frame) {
-    const SamplePacket& packet = emulator_->expose_unread(frame);
-    writer_.write(packet);
-    return {&packet, 1};
+    return written({&emulator_->expose_unread(frame), 1});
 }
 
 void StreamRecorder::finish() {
+    write_waiting();
     writer_.finish();
     output_.commit();
 }

@@ -3,6 +3,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <memory>
+#include <optional>
 #include <span>
 #include <string>
 
@@ -19,7 +20,8 @@ struct StreamRecorderOptions {
 };
 
 /// An emulated sensor that writes its samples to a stream file. The file gets its final name in
-/// `finish` or `keep`.
+/// `finish` or `keep`. If the schedule of a sensor with timing may change, a slot is written when
+/// the next one begins, as a switch may lengthen it.
 class StreamRecorder {
   public:
     /// `setup` must outlive the recorder. \throws InputError, DeviceError as PendingOutput and
@@ -37,6 +39,8 @@ class StreamRecorder {
     /// writes its samples, without those of dropped rows.
     /// Returns the packets written, valid until the next call. \throws DeviceError.
     std::span<const SamplePacket> expose(std::span<const float> frame);
+    /// The same as Emulator::expose with the cost of a slot.
+    std::span<const SamplePacket> expose(std::span<const float> frame, const SlotCost& slot);
     /// The same for a slot whose samples are all dropped, which takes a fraction of the time.
     std::span<const SamplePacket> expose_unread(std::span<const float> frame);
     /// Puts the file in place. \throws DeviceError.
@@ -60,9 +64,14 @@ class StreamRecorder {
     [[nodiscard]] double zero_fraction() const;
 
   private:
+    std::span<const SamplePacket> written(std::span<const SamplePacket> packets);
+    void write_waiting();
+
     PendingOutput output_;
     std::unique_ptr<Emulator> emulator_;
     StreamWriter writer_;
+    bool holds_back_;
+    std::optional<SamplePacket> waiting_;  ///< the last slot
     std::uint64_t samples_ = 0;
 };
 

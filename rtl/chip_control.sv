@@ -38,7 +38,7 @@ module chip_control (
     assign may_start   = !is_running && can_run && can_use[active_bank ^ wants_swap];
     assign may_swap    = !is_running || (!swap_pending && !drops && can_use[!active_bank]);
     assign refused     = (wants_start && !may_start) || (wants_swap && !may_swap);
-    assign core_rst    = !is_running;
+    assign core_rst    = rst || !is_running;
     assign is_exposing = has_begun && !is_over;
     assign stops       = stop_wanted || (slots != '0 && slot_count == slots);
 

@@ -45,27 +45,30 @@ module due_tables #(
     output logic [COLS-1:0]                 row_due,
     output logic [COLS-1:0]                 row_columns  // transferred
 );
-    localparam int WORD_BITS = $clog2(2 * DEPTH * TILE_ROWS);
     localparam int TILE_BITS = TILE_ROWS > 1 ? $clog2(TILE_ROWS) : 1;
+    localparam int WORD_BITS = SLOT_BITS + TILE_BITS;  // slot and tile row: no product of them
+    localparam int MOD_BITS = $clog2(ROWS > TILE_ROWS ? ROWS : TILE_ROWS);
+    localparam int COUNT_BITS = $clog2(COLS / CHANNELS + 2);
     localparam int ROW_BITS = ROWS > 1 ? $clog2(ROWS) : 1;
     localparam logic [1:0] WARM_UP = 0, FILL = 1, COUNT = 2, READY = 3;
 
-    logic [TILE_COLS-1:0] due_words [0:2*DEPTH*TILE_ROWS-1];
+    logic [TILE_COLS-1:0] due_words [0:2**WORD_BITS-1];
     logic [TILE_ROWS-1:0] row_words [0:2*DEPTH-1];
-    logic [SIDE_BITS-1:0] least_words [0:2*DEPTH-1];
+    logic [COUNT_BITS-1:0] least_words [0:2*DEPTH-1];
     logic [2*DEPTH-1:0] open_slots;  // of the period
 
     logic [1:0] step;
     logic [SLOT_BITS-1:0] slot, image_slot;
-    logic [SIDE_BITS-1:0] row, least;
+    logic [SIDE_BITS-1:0] row;
+    logic [COUNT_BITS-1:0] least;
+    logic [TILE_ROWS-1:0] row_word, row_word_now;  // rows of the slot that is filled
     logic [2*TILE_COLS-1:0] under_way [0:TILE_ROWS-1];  // by store: began before slot 0
 
     assign is_ready = step == READY;
 
     function automatic logic [WORD_BITS-1:0] word_at(input logic [SLOT_BITS-1:0] of_slot,
-                                                     input logic [SIDE_BITS-1:0] of_row);
-        word_at = WORD_BITS'(of_slot) * WORD_BITS'(TILE_ROWS) +
-                  WORD_BITS'(of_row % SIDE_BITS'(TILE_ROWS));
+                                                     input logic [MOD_BITS:0] of_row);
+        word_at = {of_slot, TILE_BITS'(of_row % (MOD_BITS + 1)'(TILE_ROWS))};
     endfunction
 
     function automatic logic [SLOT_BITS-1:0] in_period(input logic [SLOT_BITS-1:0] of_slot);
@@ -103,7 +106,6 @@ module due_tables #(
     // The rows that are read, and the columns of one of them: live, or of step 3.
     logic [SLOT_BITS-1:0] at_slot;
     logic [SIDE_BITS-1:0] at_row, first_row;
-    logic [ROWS-1:0] counted_rows;
     assign at_slot   = is_ready ? scan_slot : slot;
     assign at_row    = is_ready ? scan_row : row;
     assign first_row = at_row - at_row % SIDE_BITS'(GROUP_ROWS);
@@ -119,18 +121,18 @@ module due_tables #(
                     rows_of[r] = 1'b1;
     endfunction
     assign next_rows    = rows_of(row_words[next_slot], rows);
-    assign scan_rows    = rows_of(row_words[scan_slot], rows);
-    assign counted_rows = rows_of(row_words[slot], rows);
-    assign scan_least   = least_words[scan_slot];
+    assign scan_rows    = rows_of(row_words[at_slot], rows);
+    assign scan_least   = SIDE_BITS'(least_words[at_slot]);
 
     logic [TILE_COLS-1:0] word_of_row;
     logic [GROUP_ROWS*TILE_COLS-1:0] group_words;
-    assign word_of_row = due_words[word_at(at_slot, at_row)];
+    if (GROUP_ROWS > 1) assign word_of_row = due_words[word_at(at_slot, (MOD_BITS + 1)'(at_row))];
+    else assign word_of_row = group_words;
     for (genvar i = 0; i < GROUP_ROWS; i = i + 1) begin : g_group_row
         logic [SIDE_BITS-1:0] r;
         assign r = first_row + SIDE_BITS'(i);
         assign group_words[i*TILE_COLS+:TILE_COLS] = r < rows
-            ? due_words[word_at(at_slot, r)] : '0;
+            ? due_words[word_at(at_slot, (MOD_BITS + 1)'(r))] : '0;
     end
 
     logic [TILE_COLS-1:0] due_in_group_rows;
@@ -155,22 +157,22 @@ module due_tables #(
     end
 
     // Columns of the busiest channel.
-    logic [SIDE_BITS-1:0] busiest, of_channel;
+    logic [COUNT_BITS-1:0] busiest, of_channel;
     always_comb begin
         busiest = '0;
         for (int channel = 0; channel < CHANNELS; channel = channel + 1) begin
             of_channel = '0;
             for (int c = 0; c < COLS; c = c + 1)
-                if (c % CHANNELS == channel) of_channel = of_channel + SIDE_BITS'(row_columns[c]);
+                if (c % CHANNELS == channel) of_channel = of_channel + COUNT_BITS'(row_columns[c]);
             if (of_channel > busiest) busiest = of_channel;
         end
     end
 
     logic is_last_row, is_last_slot;
-    logic [SIDE_BITS-1:0] least_now;
+    logic [COUNT_BITS-1:0] least_now;
     assign is_last_row  = row + 1'b1 == (step == COUNT ? rows : SIDE_BITS'(TILE_ROWS));
     assign is_last_slot = slot + 1'b1 == (step == WARM_UP ? period : period << 1);
-    assign least_now    = counted_rows[ROW_BITS'(row)] && busiest < least ? busiest : least;
+    assign least_now    = scan_rows[ROW_BITS'(row)] && busiest < least ? busiest : least;
 
     always_ff @(posedge clk)
         if (rst) begin
@@ -183,11 +185,17 @@ module due_tables #(
             if (is_last_row && is_last_slot) step <= step + 1'b1;
         end
 
+    always_comb begin
+        row_word_now = row == '0 ? '0 : row_word;
+        row_word_now[TILE_BITS'(row)] = due != '0;
+    end
+
     always_ff @(posedge clk) begin
         if (step == WARM_UP || step == FILL) under_way[TILE_BITS'(row)] <= early_next;
         if (step == FILL) begin
-            due_words[word_at(slot, row)] <= due;
-            row_words[slot][TILE_BITS'(row)] <= due != '0;
+            due_words[word_at(slot, (MOD_BITS + 1)'(row))] <= due;
+            row_word <= row_word_now;
+            if (is_last_row) row_words[slot] <= row_word_now;
         end
         if (step == WARM_UP) open_slots[slot] <= is_open != '0 || (row != '0 && open_slots[slot]);
         if (step == COUNT && is_last_row) least_words[slot] <= least_now;

@@ -45,11 +45,13 @@ std::vector<SettingsSection> sensor_sections(SensorChoice& sensor) {
 
 void add_waveform_arguments(Command& command, WaveformOptions& options) {
     constexpr int kMaxSlots = 1'000'000;
-    const auto file = command
-                          .add_option("--vcd", options.file,
-                                      "write the readout as a waveform; needs a sensor with timing")
-                          .type_name("FILE")
-                          .output(kWaveformName);
+    const auto file =
+        command
+            .add_option("--vcd", options.file,
+                        "write the readout as a waveform, .vcd or .fst, and a .gtkw for GTKWave; "
+                        "needs a sensor with timing")
+            .type_name("FILE")
+            .output(kWaveformName);
     command.add_option("--vcd-slots", options.slots, "number of slots in the waveform")
         .shows_default()
         .check(whole_check(1, kMaxSlots))

@@ -8,7 +8,7 @@
 #include "apps/arguments/settings.h"
 #include "readout/sensor_file.h"
 #include "readout/timing/overrun_policy.h"
-#include "readout/timing/waveform.h"
+#include "readout/timing/waveform_file.h"
 
 namespace stipple {
 

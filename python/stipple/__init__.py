@@ -10,7 +10,9 @@ ValueError, errors of files OSError, both with the program's texts."""
 
 from . import capture
 from ._characterize import characterize, characterize_images
+from ._chip import Chip
 from ._explore import explore
+from ._forward_model import ForwardModel
 from ._pipeline import Schedule, compare, decode, decode_methods, emulate, load, timing
 from ._stipple import (
     ComparedVideos,
@@ -26,7 +28,9 @@ from ._stipple import (
 from ._view import View, view
 
 __all__ = [
+    "Chip",
     "ComparedVideos",
+    "ForwardModel",
     "Frame",
     "MaxMemory",
     "PreviewFrame",

@@ -39,13 +39,14 @@ void check_droppable(const ScanCosts& scans, std::int64_t budget) {
 
 ReadoutCost::ReadoutCost(const ReadoutTiming& timing, const ExposureSchedule& schedule,
                          FrameShape shape, SlotBudget budget)
-    : scans_(timing, schedule, shape), budget_(budget) {
+    : timing_(timing), budget_(budget) {
+    scans_.emplace(timing, schedule, shape);
     if (budget.clocks == 0) budget_.policy = OverrunPolicy::kStretch;
-    if (budget_.policy == OverrunPolicy::kDrop) check_droppable(scans_, budget.clocks);
+    if (budget_.policy == OverrunPolicy::kDrop) check_droppable(*scans_, budget.clocks);
 }
 
 SlotTimes ReadoutCost::times(std::int64_t slot, const SlotCost& cost) {
-    SlotTimes times = scans_.times(slot, cost.scan_begin);
+    SlotTimes times = scans_->times(slot + steady_, cost.scan_begin);
     std::erase_if(times.rows, [&](const RowTimes& row) { return row.load.row >= cost.end_row; });
     times.end = times.rows.empty() ? cost.scan_begin : times.rows.back().frame_end;
     return times;
@@ -58,16 +59,16 @@ bool ReadoutCost::meets_deadlines(const ScanCost& scan) const {
 }
 
 ReadoutCost::Cut ReadoutCost::cut(std::int64_t delay) {
-    const SlotTimes times = scans_.times(slots_, delay);
+    const SlotTimes times = scans_->times(slots_, delay);
     const auto is_late = [&](const RowTimes& row) {
         return row.load.row >= 0 &&
-               row.frame_end > scans_.deadline_slots(slots_, row.load.row) * budget_.clocks;
+               row.frame_end > scans_->deadline_slots(slots_, row.load.row) * budget_.clocks;
     };
     const auto first_late = std::ranges::find_if(times.rows, is_late);
     Cut left{.delay = delay, .counts = {}, .end_row = first_late->load.row};
     if (first_late != times.rows.begin() && std::prev(first_late)->load.row >= 0)
         for (const RowTimes& row : std::span(times.rows.begin(), first_late)) {
-            scans_.count(row, left.counts);
+            scans_->count(row, left.counts);
             left.counts.readout_clocks = row.frame_end - delay;
         }
     for (const RowTimes& row : std::span(first_late, times.rows.end()))
@@ -87,12 +88,15 @@ void ReadoutCost::drop_late_rows() {
     slot_.overrun = true;
 }
 
+std::int64_t ReadoutCost::least_clocks() const {
+    return std::max({budget_.clocks, timing().code_load_clocks, std::int64_t{1}});
+}
+
 std::int64_t ReadoutCost::end_of_slot(const ScanCost& scan) {
-    const std::int64_t clocks =
-        std::max({budget_.clocks, timing().code_load_clocks, std::int64_t{1}});
+    const std::int64_t clocks = least_clocks();
     if (!timing().exposes_while_reading)
-        return clocks +
-               (scans_.exposes(slots_ + 1) ? std::max(slot_.begin, scan_end_) : slot_.begin);
+        return clocks + (scans_->exposes(slots_ + steady_ + 1) ? std::max(slot_.begin, scan_end_)
+                                                               : slot_.begin);
     if (budget_.policy == OverrunPolicy::kStretch)
         for (const ScanDeadline& deadline : scan.deadlines) {
             std::int64_t& not_before = due_[slots_ + deadline.slots];
@@ -107,12 +111,12 @@ std::int64_t ReadoutCost::end_of_slot(const ScanCost& scan) {
 }
 
 const SlotCost& ReadoutCost::step() {
-    const ScanCost& scan = scans_.of(slots_);
+    const ScanCost& scan = scans_->of(slots_ + steady_);
     slot_ = {.counts = scan.counts,
              .begin = end_,
              .scan_begin = std::max(end_, scan_end_),
              .settle_clocks = scan.settle_clocks,
-             .end_row = scans_.shape().rows,
+             .end_row = scans_->shape().rows,
              .limit = scan.limit};
     if (budget_.policy == OverrunPolicy::kDrop && !meets_deadlines(scan)) drop_late_rows();
     scan_end_ = slot_.scan_begin + slot_.counts.readout_clocks;
@@ -128,6 +132,32 @@ void ReadoutCost::begin_at(std::int64_t slot) {
     for (auto& due : due_) due.second -= end_;
     scan_end_ -= end_;
     end_ = 0;
+}
+
+SlotCost ReadoutCost::before_switch(const ExposureSchedule& next, std::int64_t known) const {
+    std::int64_t end = end_;
+    if (!timing_.exposes_while_reading) {
+        known = std::max(known, slot_.begin);
+        end = slot_.begin + least_clocks();
+        if (scans_->exposes(slots_ + steady_))
+            end += std::max(std::min(known, scan_end_) - slot_.begin, std::int64_t{0});
+        if (ScanCosts(timing_, next, shape()).exposes(slots_))
+            end += std::max(scan_end_ - known, std::int64_t{0});
+    }
+    SlotCost slot = slot_;
+    slot.clocks = std::max(end, scan_end_) - slot.begin;
+    slot.overrun = budget_.clocks > 0 && slot.clocks > budget_.clocks;
+    return slot;
+}
+
+void ReadoutCost::switch_to(const ExposureSchedule& next, std::int64_t known) {
+    const SlotCost slot = before_switch(next, known);
+    overruns_ += (slot.overrun ? 1 : 0) - (slot_.overrun ? 1 : 0);
+    slot_ = slot;
+    end_ = slot_.begin + slot_.clocks;
+    due_.clear();
+    scans_.emplace(timing_, next, shape());
+    steady_ = std::int64_t{kMaxExposureSlots} * next.period_slots();
 }
 
 const SlotCost& ReadoutCost::add_next() {

@@ -2,7 +2,7 @@
 
 #include <cstdint>
 #include <map>
-#include <vector>
+#include <optional>
 
 #include "core/exposure_schedule.h"
 #include "core/geometry.h"
@@ -51,6 +51,16 @@ class ReadoutCost {
     /// Times of the rows that the scan of a slot reads. `cost`: that slot.
     [[nodiscard]] SlotTimes times(std::int64_t slot, const SlotCost& cost);
 
+    /// From slot `slots()` on, not the first one, the chip follows `next`, which must outlive this.
+    /// The slot before lasts until no row waits, so that the rows of a scan are those of one
+    /// schedule, and all pixels that are read from here on are due (docs/stream_format.md, kind 4).
+    /// `known`: the first clock in which the chip knows it; counts for a chip that cannot expose
+    /// while it reads. Precondition: kStretch, and a slot was added.
+    void switch_to(const ExposureSchedule& next, std::int64_t known = 0);
+    /// The slot before such a switch.
+    [[nodiscard]] SlotCost before_switch(const ExposureSchedule& next,
+                                         std::int64_t known = 0) const;
+
     /// The totals begin with this slot; what earlier slots leave to read is known. Precondition:
     /// nothing was added yet.
     void begin_at(std::int64_t slot);
@@ -61,12 +71,12 @@ class ReadoutCost {
     [[nodiscard]] std::int64_t clocks() const { return end_; }
     [[nodiscard]] const ReadoutCounts& totals() const { return totals_; }
 
-    [[nodiscard]] const ReadoutTiming& timing() const { return scans_.timing(); }
-    [[nodiscard]] const ExposureSchedule& schedule() const { return scans_.schedule(); }
-    [[nodiscard]] FrameShape shape() const { return scans_.shape(); }
+    [[nodiscard]] const ReadoutTiming& timing() const { return scans_->timing(); }
+    [[nodiscard]] const ExposureSchedule& schedule() const { return scans_->schedule(); }
+    [[nodiscard]] FrameShape shape() const { return scans_->shape(); }
     [[nodiscard]] SlotBudget budget() const { return budget_; }
-    [[nodiscard]] RowLoads& row_loads() { return scans_.row_loads(); }
-    [[nodiscard]] std::int64_t first_steady_slot() const { return scans_.first_steady_slot(); }
+    [[nodiscard]] RowLoads& row_loads() { return scans_->row_loads(); }
+    [[nodiscard]] std::int64_t first_steady_slot() const { return scans_->first_steady_slot(); }
 
   private:
     /// What is left of a scan that begins late.
@@ -76,12 +86,15 @@ class ReadoutCost {
         int end_row = 0;
     };
     const SlotCost& step();
+    [[nodiscard]] std::int64_t least_clocks() const;  ///< of a slot
     void drop_late_rows();
     [[nodiscard]] Cut cut(std::int64_t delay);
     [[nodiscard]] bool meets_deadlines(const ScanCost& scan) const;
     [[nodiscard]] std::int64_t end_of_slot(const ScanCost& scan);
 
-    ScanCosts scans_;
+    ReadoutTiming timing_;  ///< of the array
+    std::optional<ScanCosts> scans_;
+    std::int64_t steady_ = 0;  ///< to the slots of `scans_`, of which none is early after a switch
     SlotBudget budget_;
     SlotCost slot_;
     std::int64_t end_ = 0;                      ///< of `slot_`

@@ -10,8 +10,6 @@
 #include <map>
 #include <span>
 
-#include "io/output_file.h"
-
 namespace stipple {
 namespace {
 
@@ -82,6 +80,36 @@ std::string Waveform::head() const {
                             bits > 1 ? fmt::format(" [{}:0]", bits - 1) : "");
     }
     text += "$upscope $end\n$enddefinitions $end\n";
+    return text;
+}
+
+std::string Waveform::view(std::string_view file) const {
+    // Flags of GTKWave: how a signal is shown, or that the line is a comment.
+    constexpr std::string_view kBits = "@28", kDecimal = "@24", kSigned = "@420", kComment = "@200";
+    struct Group {
+        std::string_view title;
+        std::vector<Signal> signals;
+    };
+    const std::array groups{
+        Group{"Clock and slots", {kCycle, kSlot, kSlotStart, kOverrun, kCodeLoad}},
+        Group{"Conversion of a row", {kRow, kRowSelect, kAdcBusy}},
+        Group{"Transfer of a row", {kLinkRow, kLinkValid, kColumns, kChannelBusy}}};
+    std::string text =
+        fmt::format("[*] readout of {}, by stipple\n[dumpfile] \"{}\"\n", sensor_, file);
+    for (const Group& group : groups) {
+        text += fmt::format("{}\n-{}\n", kComment, group.title);
+        for (const Signal signal : group.signals) {
+            const int bits = bits_of(signal);
+            const bool is_row = signal == kRow || signal == kLinkRow;
+            const bool is_bits = bits == 1 || signal == kChannelBusy;
+            text += fmt::format("{}\n{}.{}{}\n",
+                                is_row    ? kSigned
+                                : is_bits ? kBits
+                                          : kDecimal,
+                                sensor_, kNames.at(signal),
+                                bits > 1 ? fmt::format("[{}:0]", bits - 1) : "");
+        }
+    }
     return text;
 }
 
@@ -178,19 +206,6 @@ std::string Waveform::tail(std::int64_t end) {
     for (const Change& change : changes_) end = std::max(end, change.cycle);
     return take_until(end + 1) + fmt::format("#{}\nb{} {}\n", picoseconds(end, timing_.clock_hz),
                                              binary(end, 64), code_of(kCycle));
-}
-
-void WaveformFile::write(ReadoutCost& cost, const std::string& sensor, SlotRange range,
-                         const std::function<bool()>& keep_going) {
-    OutputFile file(output_.partial(), output_.final_path().string());
-    const auto write = [&](const std::string& text) { file.write(std::as_bytes(std::span(text))); };
-    Waveform waveform(cost.timing(), sensor);
-    write(waveform.head());
-    cost.begin_at(range.first);
-    for (std::int64_t i = 0; i < range.slots && keep_going(); ++i) write(waveform.add_slot(cost));
-    write(waveform.tail(cost.clocks()));
-    file.close();
-    output_.commit();
 }
 
 }  // namespace stipple

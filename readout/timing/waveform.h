@@ -1,12 +1,10 @@
 #pragma once
 
 #include <cstdint>
-#include <functional>
 #include <string>
 #include <string_view>
 #include <vector>
 
-#include "io/pending_output.h"
 #include "readout/timing/readout_cost.h"
 #include "readout/timing/readout_timing.h"
 #include "readout/timing/slot_readout.h"
@@ -26,6 +24,9 @@ class Waveform {
 
     /// Declarations and initial values: the beginning of the file.
     [[nodiscard]] std::string head() const;
+    /// A save file of GTKWave for the waveform `file`: the signals in groups, rows as signed
+    /// numbers.
+    [[nodiscard]] std::string view(std::string_view file) const;
     /// Adds the next slot of `cost`, the same in all calls; the changes before it.
     [[nodiscard]] std::string add_slot(ReadoutCost& cost);
     /// The changes up to the end of the last slot, at clock `end`, and of its scan.
@@ -62,30 +63,6 @@ class Waveform {
     std::string sensor_;
     std::vector<Change> changes_;   ///< not yet taken
     std::vector<std::string> now_;  ///< last values, by signal
-};
-
-/// Slots [first, first + slots).
-struct SlotRange {
-    std::int64_t first = 0;
-    std::int64_t slots = 0;
-};
-
-/// A VCD file of the readout (waveform.h). Its name is reserved by the constructor, before the
-/// work, so that an unusable name is an error at once.
-class WaveformFile {
-  public:
-    /// \throws InputError as PendingOutput.
-    WaveformFile(const std::string& file, bool force) : output_(file, force) {}
-
-    /// Writes the slots of `range`, of which the first begins at time 0, as long as `keep_going`
-    /// returns true. `sensor` is the name of the scope in the file. Adds these slots to `cost`.
-    /// Precondition: nothing was added to it yet.
-    /// \throws DeviceError.
-    void write(ReadoutCost& cost, const std::string& sensor, SlotRange range,
-               const std::function<bool()>& keep_going);
-
-  private:
-    PendingOutput output_;
 };
 
 }  // namespace stipple

@@ -104,7 +104,7 @@ class OutputsTest(ProgramTest):
                 ("--output", "a sample stream is a .stipple, or", [*emulate, "out.mp4"]),
                 ("--output", "a sample stream is a .stipple, or", [*emulate, "out.npy", "--force"]),
                 ("--truth", "a video is", [*emulate, "out", "--truth", "out.stipple"]),
-                ("--vcd", "a waveform is a .vcd", ["timing", "--sensor", "vita", "--vcd", "out.txt"]),
+                ("--vcd", "a waveform is a .vcd or .fst", ["timing", "--sensor", "vita", "--vcd", "out.txt"]),
                 ("--output", "a sample stream is", ["capture", "live", f"replay:{light}", "-o", "out.strec"]),
                 ("--output", "a recording is a .strec, or", [*record, "out.mp4"]),
                 ("--output", "a sample stream is", [*record, "out.strec", "--coded"]),

@@ -116,7 +116,10 @@ class SwitchTest(ProgramTest):
         self.fails(USAGE, ["comes before the switch that precedes it"], *run, "--switch", "9:seed=2",
                    "--switch", "8:seed=3")
         self.fails(USAGE, ["--switch"], *run[:3], "pieces", "--part", "1/2", "--switch", "9:seed=2")
-        self.fails(INPUT, ["[timing]"], *run, "--sensor", "lux1310", "--switch", "9:seed=2")
+        lux = ("--sensor", "lux1310", "--switch", "9:seed=2")
+        self.fails(INPUT, ["drops late rows", "stretch"], *run, *lux, "--overrun", "drop")
+        self.fails(INPUT, ["may change"], *run, *lux[:3], "9:sensor.timing.adc_clocks=9")
+        self.fails(USAGE, ["--vcd", "--switch"], *run, *lux, "--vcd", "readout.vcd")
         done = self.run_program(*run, "--switch", "500:seed=2")
         self.assertEqual(done.returncode, OK, done.stderr)
         self.assertIn("ends before slot 500", done.stderr)

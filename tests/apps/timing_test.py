@@ -7,7 +7,7 @@ import subprocess
 import unittest
 
 import numpy as np
-from program import INPUT, USAGE, ProgramTest
+from program import DEVICE, INPUT, USAGE, ProgramTest
 from sample_stream import parts
 
 SENSORS = ("cmv4000", "imx273", "imx296", "lux1310", "lux2100", "plc720", "sp5000", "vita")
@@ -246,6 +246,56 @@ class WaveformTest(ProgramTest):
         for signal in ("slot_start", "row_select", "adc_busy", "link_valid", "channel_busy",
                        "code_load"):
             self.assertIn(signal, signals)
+
+    @unittest.skipUnless(shutil.which("vcd2fst"), "there is no vcd2fst; it is in the Debian package gtkwave")
+    def test_an_fst_file_holds_the_same_waveform(self):
+        readout = ("timing", "--sensor", "lux1310", *SMALL, "--vcd")
+        self.succeed(*readout, "readout.vcd")
+        self.succeed(*readout, "waves.fst")
+        subprocess.run(["fst2vcd", "waves.fst", "-o", "back.vcd"], cwd=self.folder, check=True,
+                       capture_output=True, timeout=60)
+        self.assertEqual(self.values("back.vcd"), self.values("readout.vcd"))
+        self.assertEqual(self.names(), ["back.vcd", "readout.gtkw", "readout.vcd", "waves.fst",
+                                        "waves.gtkw"])
+
+    def values(self, name):
+        """The changes of each signal of a VCD file: (time, value)."""
+        text = (self.folder / name).read_text()
+        names = dict(re.findall(r"^\$var wire \d+ (\S+) (\w+)", text, re.M))
+        changes, time = {}, 0
+        for line in text.split("$enddefinitions $end")[1].splitlines():
+            if line.startswith("#"):
+                time = int(line[1:])
+            elif change := re.fullmatch(r"b([01]+) (\S+)|([01])(\S+)", line):
+                value, code = change.group(1) or change.group(3), change.group(2) or change.group(4)
+                signal = changes.setdefault(names[code], [])
+                if not signal or signal[-1][1] != int(value, 2):
+                    signal.append((time, int(value, 2)))
+        return changes
+
+    def test_the_save_file_shows_every_signal_of_the_waveform(self):
+        for name, channels in (("many", 16), ("one", 1)):
+            self.succeed("timing", "--sensor", "lux1310", *SMALL, "--vcd", f"{name}.vcd",
+                         "--set", f"sensor.timing.channels={channels}")
+            scope, = re.findall(r"scope module (\w+)", (self.folder / f"{name}.vcd").read_text())
+            signals = re.findall(r"^\$var wire \d+ \S+ (\w+)(?: (\S+))? \$end", (self.folder / f"{name}.vcd").read_text(), re.M)
+            save = (self.folder / f"{name}.gtkw").read_text()
+            self.assertIn(f'[dumpfile] "{name}.vcd"', save)
+            self.assertEqual(sorted(re.findall(r"^\w+\..*$", save, re.M)),
+                             sorted(f"{scope}.{signal}{bits}" for signal, bits in signals))
+            # Rows are signed decimal numbers: dark rows are below 0.
+            self.assertRegex(save, rf"@420\n{scope}\.row\[31:0\]\n")
+
+    def test_an_fst_file_needs_its_converter(self):
+        self.fails(DEVICE, ["vcd2fst", "install the package gtkwave", ".vcd"], "timing", "--sensor", "vita",
+                   *SMALL, "--vcd", "readout.fst", env={"PATH": "/nowhere"})
+
+    def test_a_save_file_is_not_replaced(self):
+        (self.folder / "readout.gtkw").write_text("precious")
+        readout = ("timing", "--sensor", "vita", *SMALL, "--vcd", "readout.vcd")
+        self.fails(INPUT, ["readout.gtkw", "--force"], *readout)
+        self.succeed(*readout, "--force")
+        self.assertIn("readout.vcd", (self.folder / "readout.gtkw").read_text())
 
     def test_a_waveform_ends_after_the_slots_asked_for(self):
         self.write_flat("light.npy", slots=6, rows=32, cols=64)

@@ -302,9 +302,9 @@ class ViewCameraTest(ServedCamera):
 
     def test_a_sensor_that_cannot_change_says_why(self):
         self.serve()
-        viewer = self.view("--sensor", "lux1310")
-        self.assertIn("[timing]", viewer.json("camera")["sensor"]["fixed"])
-        self.assertIn("[timing]", self.act(viewer, "sensor", 400, changes="seed=2"))
+        viewer = self.view("--sensor", "lux1310", "--overrun", "drop")
+        self.assertIn("drops late rows", viewer.json("camera")["sensor"]["fixed"])
+        self.assertIn("drops late rows", self.act(viewer, "sensor", 400, changes="seed=2"))
 
     def test_what_cannot_be_viewed_is_told(self):
         self.serve()

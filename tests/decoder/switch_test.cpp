@@ -292,7 +292,9 @@ TEST(SwitchTest, TheEmulatorRefusesWhatIsNotModelled) {
     expect_parts(refusal(next), {"switch at slot 30", "only schedule, seed"});
     next = first;
     next.timing.emplace();
-    expect_parts(refusal(next), {"[timing]"});
+    expect_parts(refusal(next), {"switch at slot 30", "may change"});
+    next.overrun = OverrunPolicy::kDrop;
+    expect_parts(refusal(next), {"drops late rows"});
     next = first;
     next.schedule.schedule = {1, 1, 60, {0, 1}, {{30, open_without_gap(60)}}};
     expect_parts(refusal(next), {"switch at slot 30", "has an exposure of"});

@@ -85,7 +85,7 @@ class StreamTest(ProgramTest):
         for ours, theirs in zip(stream, clip):
             np.testing.assert_array_equal(ours, theirs)
         self.assertEqual(stream.slots(), clip.slots())
-        for switches, text in (({0: {"seed": 2}}, "slot 0"), ({5: {"gain": 2}}, "gain"), ({5: {"sensor": "lux1310"}}, "timing"),
+        for switches, text in (({0: {"seed": 2}}, "slot 0"), ({5: {"gain": 2}}, "gain"), ({5: {"sensor": "lux1310"}}, "only schedule"),
                                ({5: {"schedule": "two_bucket"}}, "interleaved")):
             with self.assertRaisesRegex(ValueError, text):
                 stipple.emulate(np.full((9, 8, 12), 0.1), switches=switches)

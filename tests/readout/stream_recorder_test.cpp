@@ -42,6 +42,7 @@ std::vector<SamplePacket> record(StreamRecorder& recorder, const FluxVideo& vide
 
 std::vector<SamplePacket> read(const std::filesystem::path& file) {
     StreamReader reader(file, ReadPolicy::kStrict);
+    reader.follow_switches();
     std::vector<SamplePacket> all;
     SamplePacket packet;
     while (reader.next(packet)) all.push_back(packet);
@@ -219,6 +220,36 @@ TEST(StreamRecorderTest, TheHeaderSaysWhatWasMadeInCode) {
     setup = set_up_sensor({}, kShape);
     setup.origin.reset();
     EXPECT_EQ(command_of(provenance_of(setup, origin)), "");
+}
+
+// The chip has 1 channel, so a whole row takes 48 clocks, and 32 of them more than two slots.
+TEST(StreamRecorderTest, TheSlotBeforeASwitchIsAnOverrunIfRowsWait) {
+    const TemporaryFolder folder;
+    const auto video = ramp(kShape);
+    SensorSetup setup = set_up_sensor({.schedule = "full4x"}, kShape);
+    ReadoutTiming& timing = setup.timing.emplace();
+    timing.clock_hz = 1'000'000;
+    timing.rows = 32;
+    timing.cols = 48;
+    setup.params.slot_us = 700;
+    SensorSetup next = set_up_sensor({.schedule = "tiled"}, kShape);
+    next.timing = setup.timing;
+    next.params.slot_us = setup.params.slot_us;
+    // Frames of 4 slots are read after slots 3, 7, ..., and take three slots.
+    for (const int slot : {4, 5, 6, 7}) {
+        const std::string name = "a" + std::to_string(slot) + ".stipple";
+        StreamRecorder recorder(folder / name, setup, {.may_switch = true});
+        for (int i = 0; i < 12; ++i) {
+            if (i == slot) recorder.switch_to(next);
+            recorder.expose(video.frame(i));
+        }
+        recorder.finish();
+        const auto packets = read(folder / name);
+        ASSERT_EQ(packets.size(), 12U);
+        EXPECT_EQ(packets[static_cast<std::size_t>(slot - 1)].flags,
+                  slot < 6 ? SamplePacket::kOverrun : 0)
+            << slot;
+    }
 }
 
 }  // namespace

@@ -137,12 +137,13 @@ SwapRun random_swap(std::uint32_t seed, Draw& draw) {
         return schedule;
     };
     SwapRun run{chip, draw_schedule(seed), draw_schedule(seed + 1000), {}};
-    const auto slots = draw(1, chip.size.rows);
-    run.capture = {.timing = random_chip_timing(chip.size, draw),
-                   .window = {slots, draw(1, chip.size.cols), 1},
-                   .budget = {draw(0, 2) == 0 ? 0 : draw(1, 200), OverrunPolicy::kStretch},
-                   .period_slots = compile_schedule(run.first).period_slots,
-                   .slots = draw(20, 60)};
+    const int rows = draw(1, chip.size.rows);
+    run.capture = {
+        .timing = random_chip_timing(chip.size, draw),
+        .window = FrameShape{rows, draw(1, chip.size.cols), 1},
+        .budget = SlotBudget{draw(0, 2) == 0 ? 0 : draw(1, 200), OverrunPolicy::kStretch},
+        .period_slots = compile_schedule(run.first).period_slots,
+        .slots = draw(20, 60)};
     run.second_offset = draw(0, compile_schedule(run.second).period_slots - 1);
     return run;
 }
@@ -194,8 +195,8 @@ std::unique_ptr<ChipSimulation> set_up_chip(const ExposureSchedule& schedule, in
     load_bank(*chip, program_for(schedule, paper.size), 0);
     Draw draw(3);
     set_up(*chip, {.timing = random_chip_timing(paper.size, draw),
-                   .window = {16, 24, 1},
-                   .budget = {100, OverrunPolicy::kStretch},
+                   .window = FrameShape{16, 24, 1},
+                   .budget = SlotBudget{100, OverrunPolicy::kStretch},
                    .period_slots = schedule.period_slots(),
                    .slots = slots});
     return chip;

@@ -2,8 +2,6 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
-
 #include "core/error.h"
 #include "core/index.h"
 #include "readout/chip_registers.h"
@@ -13,49 +11,6 @@ namespace {
 
 std::uint32_t word(std::int64_t value) {
     return static_cast<std::uint32_t>(value);
-}
-
-/// Value `place` of a register array, whose unused ones equal the last.
-template <typename Values>
-std::uint32_t padded(const Values& values, std::size_t place) {
-    return values.empty() ? 0 : word(values[std::min(place, values.size() - 1)]);
-}
-
-void set_wide(ChipSimulation& chip, std::uint32_t address, std::int64_t value) {
-    set(chip, address, word(value));
-    set(chip, address + 4, word(value >> 32));
-}
-
-void set_timing(ChipSimulation& chip, const ReadoutTiming& timing) {
-    set(chip, STIPPLE_ROW_TIMING,
-        timing.row_timing == RowTiming::kSequential  ? 1
-        : timing.row_timing == RowTiming::kFullWidth ? 2
-                                                     : 0);
-    set(chip, STIPPLE_EXPOSES_WHILE_READING, timing.exposes_while_reading ? 1 : 0);
-    set(chip, STIPPLE_ROT_CLOCKS, word(timing.rot_clocks));
-    set(chip, STIPPLE_SKIP_ROW_CLOCKS, word(timing.skip_row_clocks));
-    set(chip, STIPPLE_SETTLE_MARGIN, word(timing.settle_margin));
-    set(chip, STIPPLE_ADC_CLOCKS, word(timing.adc_clocks));
-    set(chip, STIPPLE_ADC_SKIP, timing.adc_skip ? 1 : 0);
-    set(chip, STIPPLE_BLANKING_CLOCKS, word(timing.blanking_clocks));
-    set(chip, STIPPLE_CLOCKS_PER_COLUMN, word(timing.clocks_per_column));
-    set(chip, STIPPLE_IO_CLOCKS, word(timing.io_clocks));
-    set(chip, STIPPLE_HAS_TABLE, timing.row_table_cols.empty() ? 0 : 1);
-    set(chip, STIPPLE_DARK_ROWS, word(timing.dark_rows));
-    set(chip, STIPPLE_OVERHEAD_CLOCKS, word(timing.overhead_clocks));
-    set(chip, STIPPLE_OVERHEAD_ROWS, word(timing.overhead_rows));
-    const bool has_link = timing.link_lanes > 0;
-    set_wide(chip, STIPPLE_LINK_BITS_LOW,
-             has_link ? static_cast<std::int64_t>(timing.addressing.channels *
-                                                  timing.bits_per_sample * timing.clock_hz)
-                      : 0);
-    set_wide(chip, STIPPLE_LINK_RATE_LOW,
-             has_link ? static_cast<std::int64_t>(timing.link_lanes * timing.link_bps) : 0);
-    for (std::uint32_t i = 0; i < 16; ++i) {
-        set(chip, STIPPLE_SETTLE_CLOCKS + 4 * i, padded(timing.settle_clocks, i));
-        set(chip, STIPPLE_TABLE_COLS + 4 * i, padded(timing.row_table_cols, i));
-        set(chip, STIPPLE_TABLE_CLOCKS + 4 * i, padded(timing.row_table_clocks, i));
-    }
 }
 
 }  // namespace
@@ -77,19 +32,8 @@ std::uint32_t get(ChipSimulation& chip, std::uint32_t address) {
 }
 
 void set_up(ChipSimulation& chip, const ChipCapture& capture) {
-    const std::uint32_t bank = (get(chip, STIPPLE_STATUS) & STIPPLE_STATUS_BANK) != 0 ? 1 : 0;
-    set(chip, STIPPLE_BANK_PERIOD + 4 * bank, word(capture.period_slots));
-    set(chip, STIPPLE_BANK_OFFSET + 4 * bank, word(capture.offset_slots));
-    set(chip, STIPPLE_SLOTS, word(capture.slots));
-    set(chip, STIPPLE_ROWS, word(capture.window.rows));
-    set(chip, STIPPLE_COLS, word(capture.window.cols));
-    set(chip, STIPPLE_DROPS, capture.budget.policy == OverrunPolicy::kDrop ? 1 : 0);
-    set(chip, STIPPLE_SLOT_CLOCKS,
-        word(std::max({capture.budget.clocks, std::int64_t{1},
-                       code_load_clocks(capture.timing, capture.window.rows)})));
-    set(chip, STIPPLE_BUDGET_CLOCKS, word(capture.budget.clocks));
-    set(chip, STIPPLE_FULL_ROW_CLOCKS, word(full_row_clocks(capture.timing, capture.window.cols)));
-    set_timing(chip, capture.timing);
+    const int bank = (get(chip, STIPPLE_STATUS) & STIPPLE_STATUS_BANK) != 0 ? 1 : 0;
+    for (const auto& [address, value] : capture_registers(capture, bank)) set(chip, address, value);
 }
 
 void load_bank(ChipSimulation& chip, const SequencerProgram& program, int bank) {

@@ -3,22 +3,11 @@
 #include <cstdint>
 #include <vector>
 
-#include "core/geometry.h"
+#include "readout/chip/chip_settings.h"
 #include "readout/program/sequencer_program.h"
-#include "readout/timing/readout_cost.h"
 #include "tests/rtl/chip_run.h"
 
 namespace stipple {
-
-/// What a chip runs.
-struct ChipCapture {
-    ReadoutTiming timing;
-    FrameShape window;
-    SlotBudget budget;
-    int period_slots = 1;  ///< of the active bank
-    int offset_slots = 0;
-    int slots = 1;
-};
 
 /// Clocks in which the due tables of a bank are filled.
 [[nodiscard]] std::int64_t fill_clocks(const ChipSize& size, int rows, int period_slots);

@@ -1,3 +1,4 @@
+#include <Vchip_firmware.h>
 #include <Vchip_group.h>
 #include <Vchip_one.h>
 #include <Vchip_paper.h>
@@ -61,13 +62,14 @@ class VerilatedChip : public ChipSimulation {
     VerilatedChip& operator=(const VerilatedChip&) = delete;
     ~VerilatedChip() override {
         chip_->final();
+        // Verilator takes the chip out of the context of the thread, which may be a later chip's.
+        Verilated::threadContextp(&context_);
 #if VM_COVERAGE
         static int chips = 0;
-        const char* folder = std::getenv("STIPPLE_RTL_COVERAGE");
-        if (folder != nullptr)
-            context_.coveragep()->write(
-                (std::string(folder) + "/" + typeid(Chip).name() + std::to_string(chips++) + ".dat")
-                    .c_str());
+        if (const char* folder = std::getenv("STIPPLE_RTL_COVERAGE"))
+            context_.coveragep()->write((std::string(folder) + "/" + typeid(Chip).name() +
+                                         std::to_string(chips++) + ".dat")
+                                            .c_str());
 #endif
     }
 
@@ -91,6 +93,7 @@ class VerilatedChip : public ChipSimulation {
         clock();
         return is_good;
     }
+    void set_stream_crc(std::uint32_t crc) override { chip_->stream_crc = crc; }
     void wait(std::int64_t count) override {
         for (std::int64_t i = 0; i < count; ++i) clock();
     }
@@ -172,6 +175,7 @@ std::span<const ChipModel> chip_models() {
         {"small", small_size, make_chip<Vchip_small>},
         {"group", group_size, make_chip<Vchip_group>},
         {"one", one_size, make_chip<Vchip_one>},
+        {"firmware", firmware_size, make_chip<Vchip_firmware>},
     };
     return kModels;
 }

@@ -61,6 +61,8 @@ class ChipSimulation {
     /// False if the access is an error.
     virtual bool write(std::uint32_t address, std::uint32_t value) = 0;
     virtual void wait(std::int64_t clocks) = 0;
+    /// Header CRC of the file of the next capture.
+    virtual void set_stream_crc(std::uint32_t crc) = 0;
 
     std::int64_t clocks = 0;       ///< since reset
     std::int64_t first_slot = -1;  ///< the clock of the first slot; events count from it

@@ -42,7 +42,7 @@ class ReadmeTest(unittest.TestCase):
         copy = "cp decoded.mp4 video.mp4"  # a file of the reader's own
         film = next(i for i, line in enumerate(commands) if "emulate video.mp4" in line)
         self.shell(self.top, "\n".join([enter, *commands[:film], copy, *commands[film:]]))
-        for name in ("report.html", "light", "two_bucket.png", "tiled.mem", "series/report.html", "chip.vcd",
+        for name in ("report.html", "light", "two_bucket.png", "tiled.mem", "lux/chip.sv", "series/report.html", "chip.vcd",
                      "rivals/report.html", "film.npy"):
             self.assertTrue((self.tour / name).exists(), name)
         self.python_in_the_folder_of_the_tour()

@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "core/error.h"
+#include "core/schedule_parts.h"
 #include "readout/program/sequencer_program.h"
 #include "readout/schedules/tiled_schedule.h"
 #include "tests/readout/timing/random_readout.h"
@@ -103,7 +104,8 @@ TEST(ReadoutCostTest, SlotsAreAsLongAsOnAChipThatCountsClocks) {
         const FrameShape shape{draw(1, timing.rows), timing.cols, 1};
         const ExposureSchedule schedule = random_frames(draw);
         const std::int64_t budget = draw(0, 3) * draw(1, 40);
-        const auto expected = slot_lengths_by_ticks(timing, schedule, shape, budget, 2 * kSlots);
+        const auto expected = slot_lengths_by_ticks(timing, std::vector{SchedulePart{&schedule}},
+                                                    shape, budget, 2 * kSlots);
         ReadoutCost cost(timing, schedule, shape, {budget, OverrunPolicy::kStretch});
         std::int64_t clocks = 0;
         for (const std::int64_t length : expected) {
@@ -121,6 +123,40 @@ TEST(ReadoutCostTest, SlotsAreAsLongAsOnAChipThatCountsClocks) {
     }
     EXPECT_GT(waiting, 1000) << "the test means something";
     EXPECT_GT(stretched, 1000) << "the test means something";
+}
+
+TEST(ReadoutCostTest, AtASwitchNoRowWaitsAsOnAChipThatCountsClocks) {
+    int stretched = 0;
+    for (std::uint32_t seed = 0; seed < 1000; ++seed) {
+        Draw draw(seed);
+        ReadoutTiming timing = random_timing(draw);
+        timing.exposes_while_reading = draw(0, 3) > 0;
+        const FrameShape shape{draw(1, timing.rows), timing.cols, 1};
+        const ExposureSchedule first = random_frames(draw), second = random_frames(draw);
+        const SlotBudget budget{draw(0, 3) * draw(1, 40), OverrunPolicy::kStretch};
+        const std::vector<SchedulePart> parts{{&first}, {&second, draw(1, kSlots)}};
+        const auto expected =
+            slot_lengths_by_ticks(timing, parts, shape, budget.clocks, 2 * kSlots);
+        ReadoutCost cost(timing, first, shape, budget);
+        for (std::int64_t slot = 0; slot < 2 * kSlots; ++slot) {
+            SlotCost given = cost.add_next();
+            if (slot + 1 == parts[1].first_slot) {
+                const std::int64_t before = given.clocks;
+                given = cost.before_switch(second);
+                cost.switch_to(second);
+                stretched += given.clocks > before ? 1 : 0;
+                EXPECT_EQ(given.begin + given.clocks, cost.clocks());
+            }
+            EXPECT_EQ(given.clocks, expected[static_cast<std::size_t>(slot)]) << slot;
+            EXPECT_EQ(given.overrun, budget.clocks > 0 && given.clocks > budget.clocks);
+            if (slot >= parts[1].first_slot) {
+                EXPECT_EQ(given.counts.samples, count_due(second, readout_slot(parts[1], slot), 0,
+                                                          shape.rows, shape.cols));
+            }
+        }
+        ASSERT_FALSE(testing::Test::HasFailure()) << "seed " << seed;
+    }
+    EXPECT_GT(stretched, 100) << "the test means something";
 }
 
 // The rows before the first one that would be late are read, each in time.

@@ -2,7 +2,9 @@
 
 #include <algorithm>
 #include <deque>
+#include <functional>
 
+#include "core/exposure_schedule.h"
 #include "core/index.h"
 #include "tests/readout/timing/tick_readout.h"
 
@@ -23,12 +25,11 @@ bool any_pixel_open(const ExposureSchedule& schedule, std::int64_t slot) {
 
 class TickChip {
   public:
-    TickChip(const ReadoutTiming& timing, const ExposureSchedule& schedule, FrameShape shape,
+    TickChip(const ReadoutTiming& timing, std::span<const SchedulePart> parts, FrameShape shape,
              std::int64_t budget)
         : timing_(timing),
-          schedule_(schedule),
+          parts_(parts),
           shape_(shape),
-          row_loads_(timing, schedule, shape),
           slot_clocks_(std::max({budget, code_load_clocks(timing, shape.rows), std::int64_t{1}})),
           waits_(index(shape.rows)) {}
 
@@ -41,7 +42,8 @@ class TickChip {
   private:
     std::vector<RowLoad> due_rows(std::int64_t slot) {
         std::vector<RowLoad> loads;
-        row_loads_.list(slot, loads);
+        const SchedulePart& part = parts_[part_at(parts_, slot)];
+        RowLoads(timing_, *part.schedule, shape_).list(readout_slot(part, slot), loads);
         return loads;
     }
     void begin_slot(std::int64_t slot) {
@@ -51,7 +53,7 @@ class TickChip {
         for (const RowLoad& load : due_rows(slot))
             if (load.row >= 0) waits_[index(load.row)] = true;
         queue_.push_back(slot);
-        next_is_open_ = any_pixel_open(schedule_, slot + 1);
+        next_is_open_ = any_pixel_open(*parts_[part_at(parts_, slot + 1)].schedule, slot + 1);
     }
     /// The scan that runs; the next one begins as soon as there is one.
     void scan() {
@@ -68,6 +70,8 @@ class TickChip {
     [[nodiscard]] bool scans() const { return next_row_ < rows_.size(); }
     [[nodiscard]] bool may_end() {
         if (exposed_ < slot_clocks_) return false;
+        if (part_at(parts_, slot_ + 1) != part_at(parts_, slot_))
+            return std::ranges::none_of(waits_, std::identity{});
         return std::ranges::none_of(due_rows(slot_ + 1), [&](const RowLoad& load) {
             return load.row >= 0 && waits_[index(load.row)];
         });
@@ -86,9 +90,8 @@ class TickChip {
     }
 
     const ReadoutTiming& timing_;
-    const ExposureSchedule& schedule_;
+    std::span<const SchedulePart> parts_;
     FrameShape shape_;
-    RowLoads row_loads_;
     std::int64_t slot_clocks_;
     std::vector<bool> waits_;  ///< by row, whether it keeps samples
     std::deque<std::int64_t> queue_;
@@ -105,9 +108,9 @@ class TickChip {
 }  // namespace
 
 std::vector<std::int64_t> slot_lengths_by_ticks(const ReadoutTiming& timing,
-                                                const ExposureSchedule& schedule, FrameShape shape,
-                                                std::int64_t budget, int slots) {
-    return TickChip(timing, schedule, shape, budget).lengths(slots);
+                                                std::span<const SchedulePart> parts,
+                                                FrameShape shape, std::int64_t budget, int slots) {
+    return TickChip(timing, parts, shape, budget).lengths(slots);
 }
 
 }  // namespace stipple

@@ -1,10 +1,11 @@
 #pragma once
 
 #include <cstdint>
+#include <span>
 #include <vector>
 
-#include "core/exposure_schedule.h"
 #include "core/geometry.h"
+#include "core/schedule_parts.h"
 #include "readout/timing/readout_timing.h"
 
 namespace stipple {
@@ -13,9 +14,10 @@ namespace stipple {
 /// (OverrunPolicy::kStretch), clock by clock: each row keeps its samples until the one scan has
 /// read it, and no slot ends before the rows that are due at its end are free. On a chip that
 /// cannot expose while it reads, no clock of a scan counts for the exposure of a slot in which a
-/// pixel is open. The reference of ReadoutCost.
+/// pixel is open. Between two parts of the schedule no row waits, and what the second one reads is
+/// due. The reference of ReadoutCost.
 [[nodiscard]] std::vector<std::int64_t> slot_lengths_by_ticks(const ReadoutTiming& timing,
-                                                              const ExposureSchedule& schedule,
+                                                              std::span<const SchedulePart> parts,
                                                               FrameShape shape, std::int64_t budget,
                                                               int slots);
 
