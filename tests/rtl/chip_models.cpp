@@ -67,9 +67,9 @@ class VerilatedChip : public ChipSimulation {
 #if VM_COVERAGE
         static int chips = 0;
         if (const char* folder = std::getenv("STIPPLE_RTL_COVERAGE"))
-            context_.coveragep()->write((std::string(folder) + "/" + typeid(Chip).name() +
-                                         std::to_string(chips++) + ".dat")
-                                            .c_str());
+            context_.coveragep()->write(
+                (std::string(folder) + "/" + typeid(Chip).name() + std::to_string(chips++) + ".dat")
+                    .c_str());
 #endif
     }
 
@@ -93,7 +93,9 @@ class VerilatedChip : public ChipSimulation {
         clock();
         return is_good;
     }
-    void set_stream_crc(std::uint32_t crc) override { chip_->stream_crc = crc; }
+    void set_stream_crc(std::uint32_t crc) override {
+        chip_->stream_crc = crc;
+    }
     void wait(std::int64_t count) override {
         for (std::int64_t i = 0; i < count; ++i) clock();
     }
