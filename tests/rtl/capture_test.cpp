@@ -27,7 +27,7 @@ std::uint16_t dn_of(int scan, int row, int col, int bit_depth) {
     return static_cast<std::uint16_t>((mixed ^ mixed >> 7U) & ((1U << bit_depth) - 1U));
 }
 
-ColumnDn numbered_dn(const ChipSize& size) {
+ColumnDn numbered_dn(const ChipParameters& size) {
     return [size](int scan, int row) {
         std::vector<std::uint16_t> columns;
         for (int col = 0; col < size.cols; ++col)

@@ -15,7 +15,7 @@ std::uint32_t word(std::int64_t value) {
 
 }  // namespace
 
-std::int64_t fill_clocks(const ChipSize& size, int rows, int period_slots) {
+std::int64_t fill_clocks(const ChipParameters& size, int rows, int period_slots) {
     return std::int64_t{3 * size.tile_rows + 2 * rows} * period_slots;
 }
 

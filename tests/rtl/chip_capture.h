@@ -10,7 +10,7 @@
 namespace stipple {
 
 /// Clocks in which the due tables of a bank are filled.
-[[nodiscard]] std::int64_t fill_clocks(const ChipSize& size, int rows, int period_slots);
+[[nodiscard]] std::int64_t fill_clocks(const ChipParameters& size, int rows, int period_slots);
 
 /// Writes a register that is there. \throws InputError if the access is an error.
 void set(ChipSimulation& chip, std::uint32_t address, std::uint32_t value);

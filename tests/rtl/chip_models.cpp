@@ -44,7 +44,7 @@ unsigned bits_of(const Port& port, std::size_t first, unsigned bits) {
 template <typename Chip>
 class VerilatedChip : public ChipSimulation {
   public:
-    VerilatedChip(const ChipSize& size, const ChipSurroundings& with)
+    VerilatedChip(const ChipParameters& size, const ChipSurroundings& with)
         : size_(size), dn_(with.dn), engine_(with.seed) {
         const std::string image = "+schedule=" + with.image.string();
         std::array<const char*, 2> arguments{"chip", image.c_str()};
@@ -157,7 +157,7 @@ class VerilatedChip : public ChipSimulation {
         packets += chip_->m_axis_tlast;
     }
 
-    ChipSize size_;
+    ChipParameters size_;
     ColumnDn dn_;
     std::mt19937 engine_;
     VerilatedContext context_;
@@ -165,7 +165,8 @@ class VerilatedChip : public ChipSimulation {
 };
 
 template <typename Chip>
-std::unique_ptr<ChipSimulation> make_chip(const ChipSize& size, const ChipSurroundings& with) {
+std::unique_ptr<ChipSimulation> make_chip(const ChipParameters& size,
+                                          const ChipSurroundings& with) {
     return std::make_unique<VerilatedChip<Chip>>(size, with);
 }
 

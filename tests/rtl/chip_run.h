@@ -8,24 +8,9 @@
 #include <span>
 #include <vector>
 
-namespace stipple {
+#include "readout/chip/chip_parameters.h"
 
-/// Parameters of a verilated chip (rtl/stipple_chip.sv).
-struct ChipSize {
-    int rows = 0;
-    int cols = 0;
-    int channels = 1;
-    int columns_per_adc = 1;
-    int group_rows = 1;
-    int group_cols = 1;
-    int tile_rows = 1;
-    int tile_cols = 1;
-    int pixel_bits = 1;
-    int depth = 1;  ///< slots of the schedule memory
-    int bit_depth = 8;
-    int dark_rows = 0;  ///< max
-    int word_bytes = 4;
-};
+namespace stipple {
 
 /// A strobe of the chip, `place` is its row (dark rows below 0) or 0.
 struct ChipEvent {
@@ -74,8 +59,9 @@ class ChipSimulation {
 /// A verilated chip.
 struct ChipModel {
     const char* name;
-    ChipSize size;
-    std::unique_ptr<ChipSimulation> (*make)(const ChipSize& size, const ChipSurroundings& with);
+    ChipParameters size;
+    std::unique_ptr<ChipSimulation> (*make)(const ChipParameters& size,
+                                            const ChipSurroundings& with);
 };
 
 /// All verilated chips.

@@ -105,7 +105,8 @@ std::vector<std::uint16_t> columns_of(const SamplePacket& packet, const Exposure
     return columns;
 }
 
-SequencerProgram program_for(const ExposureSchedule& schedule, const ChipSize& size, int offset) {
+SequencerProgram program_for(const ExposureSchedule& schedule, const ChipParameters& size,
+                             int offset) {
     const SequencerProgram small = compile_schedule(schedule);
     if (size.tile_rows % small.tile_rows != 0 || size.tile_cols % small.tile_cols != 0 ||
         small.bits_per_pixel > size.pixel_bits || small.period_slots > size.depth)

@@ -41,7 +41,7 @@ struct StreamBytes {
 /// repeated, and what the chip has more bits for is said. It begins `offset` slots earlier.
 /// \throws InputError if the tile does not divide that of the chip or there are too many slots or
 /// bits.
-[[nodiscard]] SequencerProgram program_for(const ExposureSchedule& schedule, const ChipSize& size,
-                                           int offset = 0);
+[[nodiscard]] SequencerProgram program_for(const ExposureSchedule& schedule,
+                                           const ChipParameters& size, int offset = 0);
 
 }  // namespace stipple

@@ -11,7 +11,7 @@ const ChipModel& model(const std::string& name) {
     return *std::ranges::find(chip_models(), name, &ChipModel::name);
 }
 
-ReadoutTiming fitted(ReadoutTiming timing, const ChipSize& size) {
+ReadoutTiming fitted(ReadoutTiming timing, const ChipParameters& size) {
     timing.rows = size.rows;
     timing.cols = size.cols;
     timing.addressing = {.kind = size.group_rows * size.group_cols > 1
@@ -24,7 +24,7 @@ ReadoutTiming fitted(ReadoutTiming timing, const ChipSize& size) {
     return timing;
 }
 
-ReadoutTiming random_chip_timing(const ChipSize& size, Draw& draw) {
+ReadoutTiming random_chip_timing(const ChipParameters& size, Draw& draw) {
     ReadoutTiming timing = fitted(random_timing(draw), size);
     timing.dark_rows = std::min(timing.dark_rows, size.dark_rows);
     timing.bits_per_sample = size.bit_depth;
@@ -42,7 +42,7 @@ ReadoutTiming random_chip_timing(const ChipSize& size, Draw& draw) {
     return timing;
 }
 
-ExposureSchedule schedule_for(const ChipSize& size, std::uint32_t seed, Draw& draw) {
+ExposureSchedule schedule_for(const ChipParameters& size, std::uint32_t seed, Draw& draw) {
     const int rows = draw(0, 1) == 0 ? size.tile_rows : 4;
     const int cols = draw(0, 1) == 0 ? size.tile_cols : 4;
     if (size.pixel_bits > 1 && draw(0, 2) == 0) return random_frames(draw);
