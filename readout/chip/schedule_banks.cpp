@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+
 #include "core/error.h"
 #include "core/index.h"
 
@@ -66,19 +68,12 @@ void ScheduleBanks::load(int bank, const SequencerProgram& program) {
     if (program.bits_per_pixel > pixel_bits_)
         refuse(fmt::format("its {} bits of a pixel are more than the {} of the schedule memory",
                            program.bits_per_pixel, pixel_bits_));
-    // A chip with more bits is told that the pixels are open in each slot.
-    const bool opens = program.bits_per_pixel == 1 && pixel_bits_ > 1;
-    for (int slot = 0; slot < program.period_slots; ++slot)
-        for (int row = 0; row < tile_rows_; ++row)
-            for (int col = 0; col < tile_cols_; ++col) {
-                const std::size_t from =
-                    (index(slot) * index(program.tile_rows) + index(row % program.tile_rows)) *
-                        index(program.tile_cols) +
-                    index(col % program.tile_cols);
-                pixels_[place(bank, index(slot) * index(tile_rows_) + index(row)) + index(col)] =
-                    static_cast<std::uint8_t>(program.pixels[from] |
-                                              (opens ? SequencerProgram::kOpen : 0U));
-            }
+    const SequencerProgram repeated = repeated_program(program, {.tile_rows = tile_rows_,
+                                                                 .tile_cols = tile_cols_,
+                                                                 .bits_per_pixel = pixel_bits_,
+                                                                 .pixels = {}});
+    std::ranges::copy(repeated.pixels,
+                      pixels_.begin() + static_cast<std::ptrdiff_t>(place(bank, 0)));
 }
 
 ExposureSchedule ScheduleBanks::schedule(int bank, int period, int first) const {

@@ -149,6 +149,24 @@ SequencerProgram compile_schedule(const ExposureSchedule& schedule) {
     return program;
 }
 
+SequencerProgram repeated_program(const SequencerProgram& program, const SequencerProgram& memory) {
+    SequencerProgram result = memory;
+    result.period_slots = program.period_slots;
+    result.pixels.clear();
+    const bool opens = program.bits_per_pixel == 1 && memory.bits_per_pixel > 1;
+    for (int slot = 0; slot < program.period_slots; ++slot)
+        for (int row = 0; row < memory.tile_rows; ++row)
+            for (int col = 0; col < memory.tile_cols; ++col) {
+                const std::size_t from =
+                    (index(slot) * index(program.tile_rows) + index(row % program.tile_rows)) *
+                        index(program.tile_cols) +
+                    index(col % program.tile_cols);
+                result.pixels.push_back(static_cast<std::uint8_t>(
+                    program.pixels[from] | (opens ? SequencerProgram::kOpen : 0U)));
+            }
+    return result;
+}
+
 ExposureSchedule schedule_of(const SequencerProgram& program, const std::string& where) {
     const ExposureFinder finder(program, where);
     std::vector<std::uint32_t> first = {0};

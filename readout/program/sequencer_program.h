@@ -45,6 +45,12 @@ struct SequencerProgram {
 /// stores or has weights.
 [[nodiscard]] SequencerProgram compile_schedule(const ExposureSchedule& schedule);
 
+/// The same program for a memory whose tile and bits per pixel may be larger: the tile is repeated,
+/// and a pixel that is always open is said to be. Precondition: `memory` has tile_rows, tile_cols
+/// that those of the program divide, and no fewer bits_per_pixel; its other members are not used.
+[[nodiscard]] SequencerProgram repeated_program(const SequencerProgram& program,
+                                                const SequencerProgram& memory);
+
 /// The schedule of `program`: an exposure of a store begins in the first open slot
 /// after its last reading. `schedule_of(compile_schedule(s)) == s` if the periods are equal.
 /// \throws InputError naming `where`, pixel and slot: a pixel is read while it is closed, is open

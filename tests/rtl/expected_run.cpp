@@ -111,23 +111,12 @@ SequencerProgram program_for(const ExposureSchedule& schedule, const ChipParamet
     if (size.tile_rows % small.tile_rows != 0 || size.tile_cols % small.tile_cols != 0 ||
         small.bits_per_pixel > size.pixel_bits || small.period_slots > size.depth)
         throw InputError("chip", "the program does not fit");
-    SequencerProgram program = small;
-    program.tile_rows = size.tile_rows;
-    program.tile_cols = size.tile_cols;
-    program.bits_per_pixel = size.pixel_bits;
-    program.pixels.clear();
-    const bool always_open = small.bits_per_pixel == 1 && size.pixel_bits > 1;
-    for (int slot = 0; slot < small.period_slots; ++slot)
-        for (int row = 0; row < size.tile_rows; ++row)
-            for (int col = 0; col < size.tile_cols; ++col) {
-                const int of = (slot + small.period_slots - offset) % small.period_slots;
-                const std::size_t at =
-                    (index(of) * index(small.tile_rows) + index(row % small.tile_rows)) *
-                        index(small.tile_cols) +
-                    index(col % small.tile_cols);
-                program.pixels.push_back(static_cast<std::uint8_t>(
-                    small.pixels[at] | (always_open ? SequencerProgram::kOpen : 0U)));
-            }
+    SequencerProgram program = repeated_program(small, {.tile_rows = size.tile_rows,
+                                                        .tile_cols = size.tile_cols,
+                                                        .bits_per_pixel = size.pixel_bits,
+                                                        .pixels = {}});
+    const auto last_slots = static_cast<std::ptrdiff_t>(offset * size.tile_rows * size.tile_cols);
+    std::rotate(program.pixels.begin(), program.pixels.end() - last_slots, program.pixels.end());
     return program;
 }
 
