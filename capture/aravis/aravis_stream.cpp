@@ -27,12 +27,20 @@ BufferMemory& memory_of(ArvBuffer* buffer) {
 }
 
 /// Aravis stamps the first packet of a frame with the host's realtime; where that packet was lost,
-/// the frame arrived before now.
-void stamp_arrival(ArvBuffer* buffer, FrameRecord& record) {
-    const std::int64_t now_ns = realtime_ns();
+/// the frame arrived before now. A thread that waits for its core between two clocks reads them again.
+/// No frame arrives before the last one, or later than now, whatever the realtime clock does.
+void stamp_arrival(ArvBuffer* buffer, FrameRecord& record, std::int64_t last_monotonic_ns) {
+    std::int64_t now_ns = 0, realtime_now_ns = 0;
+    for (int tries = 0; tries < 5; ++tries) {
+        now_ns = monotonic_ns();
+        realtime_now_ns = realtime_ns();
+        if (monotonic_ns() - now_ns < 1000)
+            break;
+    }
     const auto first_ns = static_cast<std::int64_t>(arv_buffer_get_system_timestamp(buffer));
-    record.host_realtime_ns = first_ns != 0 ? first_ns : now_ns;
-    record.host_monotonic_ns = monotonic_ns() - (now_ns - record.host_realtime_ns);
+    record.host_realtime_ns = first_ns != 0 ? first_ns : realtime_now_ns;
+    record.host_monotonic_ns = std::clamp(now_ns - (realtime_now_ns - record.host_realtime_ns),
+                                          last_monotonic_ns, now_ns);
 }
 
 /// A frame whose leader was lost keeps what its buffer said before: this.
@@ -67,6 +75,7 @@ struct AravisStream::Impl {
     std::uint64_t cut_frames = 0;
     ArvBuffer* held_back = nullptr;  ///< of the last frame, if that was incomplete
     std::uint64_t last_wire_id = 0;
+    std::int64_t last_arrival_ns = 0;  ///< monotonic
     bool running = false;
     std::int64_t started_ns = 0;
     std::atomic<bool> lost = false;
@@ -269,7 +278,8 @@ CapturedFrame AravisStream::Impl::frame_from(ArvBuffer* buffer, FramePool& pool)
     record.status = status_of(status);
     record.device_ns = static_cast<std::int64_t>(arv_buffer_get_timestamp(buffer));
     record.stamp_source = record.device_ns != 0 ? StampSource::kDeviceClock : StampSource::kNone;
-    stamp_arrival(buffer, record);
+    stamp_arrival(buffer, record, last_arrival_ns);
+    last_arrival_ns = record.host_monotonic_ns;
     std::size_t came = memory.size();
     if (!has_leader &&
         (status == ARV_BUFFER_STATUS_SUCCESS || status == ARV_BUFFER_STATUS_CLEARED)) {
