@@ -25,6 +25,7 @@
 #include "decoder/measurements.h"
 #include "decoder/naive/nearest_samples.h"
 #include "decoder/pixel_response.h"
+#include "decoder/plug_and_play/plug_and_play.h"
 #include "decoder/portz2013/portz2013.h"
 #include "decoder/reddy2011/reddy2011.h"
 
@@ -100,6 +101,19 @@ constexpr NamedDecodeMethod kMethods[] = {
          return decode_with_prior(block, [](const PriorTask& task) {
              return decode_collaborative(task.measurements, task.noise, task.options.best,
                                          task.progress);
+         });
+     }},
+    {"plug_and_play", DecodeMethod::kPlugAndPlay, true, false,
+     "the iterations of best with a denoiser of your own, a network or in Python", kMaxCoreSites,
+     76, 11,
+     [](Config& config, DecodeOptions& options) {
+         read_options(config, options.best);
+         read_options(config, options.plug_and_play);
+     },
+     [](const BlockTask& block) {
+         return decode_with_prior(block, [](const PriorTask& task) {
+             return decode_plug_and_play({task.measurements, task.noise, task.progress},
+                                         task.options.best, task.options.plug_and_play);
          });
      }},
     {"portz2013", DecodeMethod::kPortz2013, false, true,

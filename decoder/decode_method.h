@@ -18,11 +18,12 @@ struct DecodeOptions;
 struct Measurements;
 
 enum class DecodeMethod {
-    kNaive,      ///< each pixel holds its nearest samples; no model of the scene
-    kLive,       ///< residuals of samples blurred in space, for a picture while filming
-    kFast,       ///< motion-compensated total variation
-    kBest,       ///< collaborative filter of similar patches
-    kPortz2013,  ///< the method of the paper, in two stages
+    kNaive,        ///< each pixel holds its nearest samples; no model of the scene
+    kLive,         ///< residuals of samples blurred in space, for a picture while filming
+    kFast,         ///< motion-compensated total variation
+    kBest,         ///< collaborative filter of similar patches
+    kPlugAndPlay,  ///< the same with a denoiser of the user
+    kPortz2013,    ///< the method of the paper, in two stages
     // Of other coded cameras.
     kReddy2011,   ///< wavelets and brightness constancy
     kHitomi2011,  ///< patches of a learned dictionary

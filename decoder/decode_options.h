@@ -11,6 +11,7 @@
 #include "decoder/decode_method.h"
 #include "decoder/fast/motion_tv.h"
 #include "decoder/hitomi2011/hitomi2011.h"
+#include "decoder/plug_and_play/plug_and_play.h"
 #include "decoder/portz2013/portz2013.h"
 #include "decoder/reddy2011/reddy2011.h"
 #include "decoder/stage_observer.h"
@@ -21,7 +22,8 @@ namespace stipple {
 struct DecodeOptions {
     DecodeMethod method = DecodeMethod::kBest;
     MotionTvOptions fast = {};
-    CollaborativeOptions best = {};
+    CollaborativeOptions best = {};  ///< of `plug_and_play` too
+    PlugAndPlayOptions plug_and_play = {};
     Portz2013Options portz2013 = {};
     Reddy2011Options reddy2011 = {};
     Hitomi2011Options hitomi2011 = {};

@@ -18,12 +18,14 @@ struct DecodeSetup {
 /// read_decode_options.
 [[nodiscard]] DecodeSetup decode_setup(std::string_view method, Config config);
 
-/// The same, with the files that the options name. \throws InputError also as read_dictionary.
+/// The same, with the file that the options name. \throws InputError also as read_option_file.
 [[nodiscard]] DecodeSetup read_decode_setup(std::string_view method, Config config);
 
-/// Reads the dictionary of patches that the options name, if they name one (decoder/ reads no
-/// files). \throws InputError if there is no such file, and as read_npy_volume and
-/// patch_dictionary.
-void read_dictionary(DecodeOptions& options);
+/// The file that the options name: a dictionary of patches or a network; empty if they name none.
+[[nodiscard]] std::string option_file(const DecodeOptions& options);
+
+/// Reads that file, if there is one (decoder/ reads no files). \throws InputError if there is no
+/// such file, and as read_npy_volume and patch_dictionary, or read_file and network_denoiser.
+void read_option_file(DecodeOptions& options);
 
 }  // namespace stipple

@@ -82,18 +82,17 @@ DecodingIdentity identity_of(const ShardedDecoding& decoding, const std::functio
     const StreamHeader header = StreamReader(stream).header();
     const fs::path calibration = calibration_file(stream, decoding.calibration);
     const DecodeOptions& options = decoding.setup.options;
-    const std::string& dictionary = options.hitomi2011.dictionary_file;
+    const std::string file = option_file(options);
     const auto whole = stream_identity(stream);
-    return {
-        .stream_bytes = fs::file_size(stream),
-        .stream = whole ? *whole : "sha256 " + sha256_of(stream),
-        .method = std::string(named(options.method).name),
-        .options = decoding.setup.given + (dictionary.empty() ? "" : "# " + sha256_of(dictionary)),
-        .calibration_sha256 = calibration.empty() ? "" : sha256_of(calibration),
-        .fill_gaps = options.fill_gaps,
-        .slots = slots_of(stream, check),
-        .shape = decoded_shape(header),
-        .slot_us = header.slot_us};
+    return {.stream_bytes = fs::file_size(stream),
+            .stream = whole ? *whole : "sha256 " + sha256_of(stream),
+            .method = std::string(named(options.method).name),
+            .options = decoding.setup.given + (file.empty() ? "" : "# " + sha256_of(file)),
+            .calibration_sha256 = calibration.empty() ? "" : sha256_of(calibration),
+            .fill_gaps = options.fill_gaps,
+            .slots = slots_of(stream, check),
+            .shape = decoded_shape(header),
+            .slot_us = header.slot_us};
 }
 
 std::string identity_text(const DecodingIdentity& identity) {

@@ -10,7 +10,7 @@
 #include "core/config.h"
 #include "core/index.h"
 #include "core/parallel.h"
-#include "decoder/best/patch_kernels.h"
+#include "decoder/best/patch_denoiser.h"
 #include "decoder/data_prox.h"
 #include "decoder/fast/censored_samples.h"
 #include "decoder/fast/motion_tv.h"
@@ -27,15 +27,17 @@ constexpr double kStartShare = 0.15;  // of all work; for the progress
 constexpr float kMaxOffset = 1e3F;    // flux; where noise is larger than that, light is not seen
 constexpr float kMaxSigma = 10;
 
-class CollaborativeSolver {
+/// Half-quadratic splitting of one block.
+class SplittingSolver {
   public:
-    CollaborativeSolver(Measurements& measurements, const SampleNoise& noise,
-                        const CollaborativeOptions& options, FluxVideo& x)
-        : measurements_(measurements),
-          noise_(noise),
+    SplittingSolver(const SplittingTask& task, const CollaborativeOptions& options,
+                    Denoiser denoiser, FluxVideo& x)
+        : measurements_(task.measurements),
+          noise_(task.noise),
           options_(options),
-          scale_(scale_for(noise, options)),
-          last_sigma_(std::clamp(options.last_noise * std::sqrt(noise.per_light()),
+          denoiser_(std::move(denoiser)),
+          scale_(scale_for(noise_, options)),
+          last_sigma_(std::clamp(options.last_noise * std::sqrt(noise_.per_light()),
                                  options.min_sigma, kMaxSigma)),
           first_sigma_(std::max(options.first_sigma, last_sigma_)),
           x_(x),
@@ -44,19 +46,23 @@ class CollaborativeSolver {
           pilot_(x.slots(), x.shape()),
           runs_(site_runs(x.shape())),
           step_(index(x.slots()) * x.shape().pixels()),
-          prox_(measurements),
-          samples_per_voxel_(samples_per_voxel(measurements)) {
-        for_each_sensor(measurements,
-                        [&](Measurements& sensor) { sensors_.emplace_back(sensor, noise); });
+          prox_(measurements_),
+          samples_per_voxel_(samples_per_voxel(measurements_)) {
+        for_each_sensor(measurements_,
+                        [&](Measurements& sensor) { sensors_.emplace_back(sensor, noise_); });
     }
 
-    /// Filters the estimate. All iterations but the last end with the data-consistency step.
+    /// Denoises the estimate. All iterations but the last end with the data-consistency step.
     void iterate(int iteration) {
         const float sigma = sigma_of(iteration);
 
-        // z = 2 sqrt(x + offset), groups of similar patches of z, their filter for noise sigma.
-        find_groups(iteration);
-        filter_groups(noisy_, pilot_, groups_, sigma, filtered_);
+        // z = 2 sqrt(x + offset), without its noise of sigma.
+        for_each_slot([&](int slot) {
+            stabilise_variance(std::as_const(x_).frame(slot), shape().planes, scale_,
+                               noisy_.frame(slot));
+        });
+        if (iteration == 0) pilot_ = noisy_;
+        denoiser_({iteration, sigma, x_, noisy_, pilot_}, filtered_);
         std::swap(filtered_, pilot_);
 
         // z_k + beta (z_k - z_(k-1)), and back to light: x = z^2 / 4 - offset.
@@ -109,24 +115,6 @@ class CollaborativeSolver {
         const double first = static_cast<double>(first_sigma_);
         const double sigma = first * std::pow(static_cast<double>(last_sigma_) / first, done);
         return static_cast<float>(std::round(sigma * 0x1p20) * 0x1p-20);
-    }
-
-    void find_groups(int iteration) {
-        if (iteration % options_.motion_every == 0 &&
-            std::min(shape().rows, shape().cols) >= kMinMotionSide)
-            motion_ = estimate_motion(x_, {});
-        for_each_slot([&](int slot) {
-            stabilise_variance(std::as_const(x_).frame(slot), shape().planes, scale_,
-                               noisy_.frame(slot));
-        });
-        if (iteration == 0) pilot_ = noisy_;
-        if (iteration % options_.match_every != 0) return;
-        // The grid moves, so that the seams between patches do not stay in one place.
-        const int step = options_.patch_stride;
-        const int offset = iteration / options_.match_every * (step / 2 + 1) % step;
-        const bool near = measurements_.mosaic && iteration < options_.mosaic.near_iterations;
-        groups_ = match_patches(pilot_, {shape(), step, offset}, motion_,
-                                near ? options_.mosaic.near : options_.matching);
     }
 
     /// Momentum (heavy ball; Polyak, USSR Comput. Math. Math. Phys. 4(5), 1964): the last filtered
@@ -190,6 +178,7 @@ class CollaborativeSolver {
     Measurements& measurements_;
     const SampleNoise& noise_;
     const CollaborativeOptions& options_;
+    Denoiser denoiser_;
     AnscombeParams scale_;
     float last_sigma_;
     float first_sigma_;
@@ -202,8 +191,6 @@ class CollaborativeSolver {
     std::vector<float> step_;
     JointProx prox_;
     float samples_per_voxel_;
-    std::vector<MotionField> motion_;
-    PatchGroups groups_;
 };
 
 CollaborativeOptions options_for(const Measurements& measurements, CollaborativeOptions options) {
@@ -253,6 +240,11 @@ void read_options(Config& config, CollaborativeOptions& options) {
          options.residual_gain);
     read({"residual_decay", {0, 1}, "", "decay of the added residuals in each iteration"},
          options.residual_decay);
+    read({"data_step",
+          {0.01, 100},
+          "",
+          "step size of the data-consistency step, times sigma^2 (x + offset)"},
+         options.data_step);
     read({"momentum", {0, 1}, "", "momentum beta: x + beta (x - x_previous)"}, options.momentum);
     read({"mosaic.iterations", kIterations, "", "iterations of a mosaic"},
          options.mosaic.iterations);
@@ -267,11 +259,7 @@ void read_options(Config& config, CollaborativeOptions& options) {
          options.direct.match_every);
     read({"direct.patch_stride", {1, kPatchSide}, "pixels", "patch_stride of these"},
          options.direct.patch_stride);
-    read({"direct.data_step",
-          {0.01, 100},
-          "",
-          "step size of their data-consistency step, times sigma^2 (x + offset)"},
-         options.direct.data_step);
+    read({"direct.data_step", {0.01, 100}, "", "data_step of these"}, options.direct.data_step);
     read({"noise_free.iterations", kIterations, "", "iterations without noise"},
          options.noise_free.iterations);
     read({"noise_free.first_sigma", kSigma, "", "first_sigma without noise"},
@@ -303,21 +291,33 @@ CollaborativeOptions without_noise(CollaborativeOptions options) {
 }
 
 std::optional<FluxVideo> decode_collaborative(Measurements& measurements, const SampleNoise& noise,
-                                              const CollaborativeOptions& all_options,
+                                              const CollaborativeOptions& options,
                                               const ProgressCallback& progress) {
-    const CollaborativeOptions options = options_for(measurements, all_options);
+    if (std::min(measurements.shape.rows, measurements.shape.cols) < kPatchSide)
+        return decode_motion_tv(measurements, noise, options.start, progress);
+    const auto patches = [](const CollaborativeOptions& of_block, bool mosaic) {
+        return PatchDenoiser(of_block, mosaic);
+    };
+    return decode_by_splitting({measurements, noise, progress}, options, patches);
+}
+
+std::optional<FluxVideo> decode_by_splitting(const SplittingTask& task,
+                                             const CollaborativeOptions& all_options,
+                                             const DenoiserMaker& denoiser) {
+    const CollaborativeOptions options = options_for(task.measurements, all_options);
 
     // x0: the result of `fast`.
-    auto x = decode_motion_tv(measurements, noise, options.start,
-                              [&](double fraction) { return progress(kStartShare * fraction); });
-    if (!x || std::min(x->shape().rows, x->shape().cols) < kPatchSide) return x;
+    auto x = decode_motion_tv(task.measurements, task.noise, options.start, [&](double fraction) {
+        return task.progress(kStartShare * fraction);
+    });
+    if (!x) return x;
 
-    // Filter and data consistency in turn, for noise that decreases.
-    CollaborativeSolver solver(measurements, noise, options, *x);
+    // Denoiser and data consistency in turn, for noise that decreases.
+    SplittingSolver solver(task, options, denoiser(options, task.measurements.mosaic), *x);
     bool stopped = false;
     for (int i = 0; i < options.iterations && !stopped; ++i) {
         solver.iterate(i);
-        stopped = !progress(kStartShare + (1 - kStartShare) * (i + 1) / options.iterations);
+        stopped = !task.progress(kStartShare + (1 - kStartShare) * (i + 1) / options.iterations);
     }
     solver.restore_samples();
     if (stopped) return {};

@@ -4,6 +4,7 @@
 
 #include "core/flux_video.h"
 #include "core/progress.h"
+#include "decoder/best/denoiser.h"
 #include "decoder/best/patch_matching.h"
 #include "decoder/fast/motion_tv.h"
 
@@ -83,11 +84,23 @@ struct CollaborativeOptions {
 /// The keys of `stipple list keys decoder`. \throws InputError as Config.
 void read_options(Config& config, CollaborativeOptions& options);
 
-/// Decodes one block: the estimate of `decode_motion_tv`, then iterations of collaborative filter
-/// and proximal map of the data term, which is half-quadratic splitting with a denoiser as its
-/// prior (Venkatakrishnan et al., GlobalSIP 2013; Danielyan et al., IEEE TIP 21(4), 2012). A frame
-/// smaller than a patch keeps the start estimate. Changes the sums of `measurements` during the
-/// call. Returns nothing if `progress` has stopped it.
+/// The samples of one block. Their sums are changed during a call.
+struct SplittingTask {
+    Measurements& measurements;
+    const SampleNoise& noise;
+    const ProgressCallback& progress;
+};
+
+/// Decodes one block: the estimate of `decode_motion_tv`, then iterations of denoiser and proximal
+/// map of the data term, which is half-quadratic splitting with a denoiser as its prior
+/// (Venkatakrishnan et al., GlobalSIP 2013; Danielyan et al., IEEE TIP 21(4), 2012). Returns
+/// nothing if `progress` has stopped it. \throws what the denoiser throws.
+[[nodiscard]] std::optional<FluxVideo> decode_by_splitting(const SplittingTask& task,
+                                                           const CollaborativeOptions& options,
+                                                           const DenoiserMaker& denoiser);
+
+/// The same with the collaborative filter (patch_denoiser.h) as the denoiser. A frame smaller than
+/// a patch keeps the start estimate.
 [[nodiscard]] std::optional<FluxVideo> decode_collaborative(
     Measurements& measurements, const SampleNoise& noise, const CollaborativeOptions& options,
     const ProgressCallback& progress = [](double) { return true; });

@@ -46,4 +46,19 @@ void dis_flow(PlaneView<const float> from, PlaneView<const float> to, std::span<
     calculate(from, to, flow);
 }
 
+ImageNetwork open_network(std::span<const std::uint8_t> onnx) {
+    static auto* const open =
+        reinterpret_cast<void (*)(std::span<const std::uint8_t>, ImageNetwork&)>(
+            load("stipple_open_network"));
+    ImageNetwork network;
+    open(onnx, network);
+    return network;
+}
+
+void QuietOpenCv::swap_settings() {
+    static auto* const swap =
+        reinterpret_cast<void (*)(int&, int&)>(load("stipple_swap_opencv_settings"));
+    swap(threads_, log_level_);
+}
+
 }  // namespace stipple

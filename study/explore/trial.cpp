@@ -200,16 +200,18 @@ DecodeReport decode_streams(const Trial& trial, const TrialStreams& files,
 }
 
 /// The method and its options; `keys` gets what identifies them: the given keys as lines of TOML, a
-/// dictionary by its bytes.
+/// file by its bytes.
 DecodeOptions decoding_of(const std::string& method, std::vector<std::string> settings,
                           std::string& keys) {
     Config config(settings, "decoder");
     DecodeOptions options = read_decode_options(decode_method_from_name(method), config);
-    read_dictionary(options);
-    std::erase_if(settings, [](const std::string& s) { return s.starts_with("dictionary="); });
+    read_option_file(options);
+    const bool network = options.method == DecodeMethod::kPlugAndPlay;
+    const std::string key = network ? "denoiser" : "dictionary";
+    std::erase_if(settings, [&](const std::string& s) { return s.starts_with(key + "="); });
     keys = Config(settings).as_toml("");
-    if (const std::string& file = options.hitomi2011.dictionary_file; !file.empty())
-        keys += fmt::format("# dictionary {}\n", origin_of(file, {}, [] {}).sha256);
+    if (const std::string file = option_file(options); !file.empty())
+        keys += fmt::format("# {} {}\n", key, origin_of(file, {}, [] {}).sha256);
     return options;
 }
 

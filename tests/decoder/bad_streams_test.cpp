@@ -41,6 +41,9 @@ class BadStreamsTest : public testing::TestWithParam<NamedDecodeMethod> {
     static DecodeOptions options() {
         DecodeOptions options{.method = GetParam().method};
         options.hitomi2011.dictionary = cosine_dictionary({.slots = 8, .side_px = 4}, 3);
+        options.plug_and_play.denoiser = [](const auto&, bool) -> Denoiser {
+            return [](const DenoiserInput& input, FluxVideo& result) { result = input.noisy; };
+        };
         options.reddy2011.first_iterations = 10;
         options.reddy2011.rounds = 2;
         options.reddy2011.iterations = 5;
