@@ -16,6 +16,7 @@ void bind_stream(py::module_& module);
 void bind_emulate(py::module_& module);
 void bind_chip(py::module_& module);
 void bind_decode(py::module_& module);
+void bind_denoiser(py::module_& module);
 void bind_forward_model(py::module_& module);
 void bind_compare(py::module_& module);
 void bind_explore(py::module_& module);

@@ -18,6 +18,7 @@
 #include "decoder/block_partition.h"
 #include "python/bindings.h"
 #include "python/call_progress.h"
+#include "python/denoiser.h"
 #include "python/errors.h"
 #include "python/footage.h"
 #include "python/sensor.h"
@@ -56,9 +57,19 @@ DecodeTask decode_task(const py::object& method, const py::dict& settings, bool 
         throw InputError("options",
                          "hitomi2011 needs {\"dictionary\": FILE}, which a command makes: "
                          "stipple dictionary FOOTAGE -o FILE.npy");
-    reading(dictionary, [&] { read_dictionary(options); });
+    reading(option_file(options), [&] { read_option_file(options); });
     options.fill_gaps = fill_gaps;
     return task;
+}
+
+void set_denoiser(DecodeTask& task, const py::object& call) {
+    DecodeOptions& options = task.setup.options;
+    if (options.method != DecodeMethod::kPlugAndPlay)
+        throw InputError("denoiser", fmt::format("is for the method plug_and_play, not for {}",
+                                                 named(options.method).name));
+    if (options.plug_and_play.denoiser)
+        throw InputError("denoiser", "is given twice, as a function and as an option");
+    options.plug_and_play.denoiser = python_denoiser(call);
 }
 
 /// What the user should know of a stream that was decoded to its end, or to `until`.
@@ -145,6 +156,7 @@ void bind_decode(py::module_& module) {
     py::class_<DecodeTask>(module, "DecodeTask")
         .def(py::init(&decode_task))
         .def_readwrite("calibration", &DecodeTask::calibration)
+        .def("set_denoiser", &set_denoiser)
         .def("begin_at_block", [](DecodeTask& task, std::int64_t number) {
             task.setup.options.first_slot = block_begin(number);
         });

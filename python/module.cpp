@@ -34,6 +34,7 @@ PYBIND11_MODULE(_stipple, module) {
     bind_emulate(module);
     bind_chip(module);
     bind_decode(module);
+    bind_denoiser(module);
     bind_forward_model(module);
     bind_compare(module);
     bind_explore(module);

@@ -11,11 +11,13 @@ ValueError, errors of files OSError, both with the program's texts."""
 from . import capture
 from ._characterize import characterize, characterize_images
 from ._chip import Chip
+from ._denoise import denoise
 from ._explore import explore
 from ._forward_model import ForwardModel
 from ._pipeline import Schedule, compare, decode, decode_methods, emulate, load, timing
 from ._stipple import (
     ComparedVideos,
+    DenoiserStep,
     Frame,
     MaxMemory,
     PreviewFrame,
@@ -30,6 +32,7 @@ from ._view import View, view
 __all__ = [
     "Chip",
     "ComparedVideos",
+    "DenoiserStep",
     "ForwardModel",
     "Frame",
     "MaxMemory",
@@ -47,6 +50,7 @@ __all__ = [
     "compare",
     "decode",
     "decode_methods",
+    "denoise",
     "emulate",
     "explore",
     "load",

@@ -11,7 +11,7 @@ from typing import Any, Callable, Dict, Iterator, Mapping, Optional, Tuple, Unio
 import numpy as np
 import numpy.typing as npt
 
-from . import _stipple
+from . import _denoise, _stipple
 from ._stipple import ComparedVideos, Sensor, Stream, decode_methods
 
 __all__ = ["Schedule", "compare", "decode", "decode_methods", "emulate", "load", "timing"]
@@ -208,6 +208,7 @@ def decode(
     fill_gaps: bool = False,
     strict: bool = False,
     calibration: Optional[Name] = None,
+    denoiser: Optional[_denoise.Denoiser] = None,
     threads: int = 0,
     progress: Tell = None,
 ) -> npt.NDArray[np.float32]:
@@ -225,11 +226,18 @@ def decode(
     strict: raise ValueError at the first damage. Else damage costs its own samples and is a UserWarning.
     calibration: of the chip, a file that "stipple calibrate" wrote (docs/calibration.md), or "none". By
         default NAME.stcal beside a stream NAME.stipple, if it is there.
+    denoiser: of plug_and_play, denoiser(video, sigma) or denoiser(video, sigma, step), which returns the video
+        without noise, an array of its shape (docs/research.md#your-denoiser). `video` is a block, float32
+        (slot, row, col) or (slot, row, col, plane), on the scale 2 sqrt(light), `sigma` the standard deviation
+        of its noise, and `step` a DenoiserStep. It is called in this thread. What it raises ends the call.
     threads: 0 means all cores. The values do not depend on it.
     progress: as for `emulate`.
     """
     task = _stipple.DecodeTask(method, options, fill_gaps, strict, until)
     task.calibration = calibration
+    _denoise.check_given(method, options, denoiser)
+    if denoiser is not None:
+        task.set_denoiser(_denoise.as_called(denoiser))
     source = stream if isinstance(stream, Stream) else Stream.open(stream)
     with _stipple.Threads(threads):
         return _stipple.decode(source, task, progress)
