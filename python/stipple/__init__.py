@@ -11,6 +11,7 @@ ValueError, errors of files OSError, both with the program's texts."""
 from . import capture
 from ._characterize import characterize, characterize_images
 from ._chip import Chip
+from ._dataset import Dataset, TrainingItem, dataset
 from ._explore import explore
 from ._forward_model import ForwardModel
 from ._pipeline import Schedule, compare, decode, decode_methods, emulate, load, timing
@@ -30,6 +31,7 @@ from ._view import View, view
 __all__ = [
     "Chip",
     "ComparedVideos",
+    "Dataset",
     "ForwardModel",
     "Frame",
     "MaxMemory",
@@ -38,6 +40,7 @@ __all__ = [
     "Schedule",
     "Sensor",
     "Stream",
+    "TrainingItem",
     "VideoQuality",
     "View",
     "__version__",
@@ -45,6 +48,7 @@ __all__ = [
     "characterize",
     "characterize_images",
     "compare",
+    "dataset",
     "decode",
     "decode_methods",
     "emulate",
