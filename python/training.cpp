@@ -2,6 +2,7 @@
 #include <pybind11/numpy.h>
 #include <pybind11/stl.h>
 
+#include <cstdint>
 #include <memory>
 #include <utility>
 #include <vector>
@@ -12,6 +13,7 @@
 #include "python/schedule.h"
 #include "python/sensor.h"
 #include "readout/coded_sensor.h"
+#include "readout/schedule_feasibility.h"
 #include "study/training/moving_crop.h"
 #include "study/training/training_item.h"
 
@@ -39,7 +41,11 @@ class TrainingChip {
                  int planes)
         : setup_(set_up(with_seed_of(schedule, sensor_of(sensor)), schedule,
                         FrameShape{.rows = rows, .cols = cols, .planes = planes},
-                        ColourFilter::kNone)) {}
+                        ColourFilter::kNone)) {
+        if (const auto problem =
+                store_problem(setup_.schedule.schedule, setup_.params.charge_stores))
+            throw InputError("schedules", *problem);
+    }
 
     /// Light of the crop, and its samples.
     std::pair<py::array, std::unique_ptr<ForwardModel>> item(const Light& light,

@@ -49,7 +49,8 @@ def scene(seed, frames=48, side=96):
         for image, speed, disc in layers:
             light = moved(image, slot * speed)
             if disc is not None:
-                away = [(at - disc[0][i] - slot * speed[i] + side / 2) % side - side / 2 for i, at in enumerate((row, col))]
+                middle = disc[0] + slot * speed - side / 2
+                away = [(at - middle[i]) % side - side / 2 for i, at in enumerate((row, col))]
                 cover = np.clip(disc[1] + 0.5 - np.hypot(*away), 0, 1)
                 light = cover * light + (1 - cover) * video[slot]
             video[slot] = light
@@ -118,7 +119,7 @@ def lattice():
 def train(steps, batch=2):
     """The learned weights and their delays."""
     torch.manual_seed(1)
-    data = stipple.dataset([scene(seed) for seed in range(24)], SENSOR, "full1x", crop=(CROP, CROP), slots=SLOTS,
+    data = stipple.dataset([scene(seed) for seed in range(min(24, batch * steps))], SENSOR, "full1x", crop=(CROP, CROP), slots=SLOTS,
                            light=(0.3, 2))
     begin, delays = lattice()
     chip, codes, decoder = st.CodedSensor(SENSOR, PERIOD), Codes(begin), Decoder()
@@ -139,10 +140,16 @@ def train(steps, batch=2):
         learn.step()
         losses.append(float(loss))
         if (step + 1) % max(steps // 10, 1) == 0:
-            print(f"step {step + 1} of {steps}: {-10 * np.log10(np.mean(losses[-steps // 10 - 1:])):.2f} dB", flush=True)
+            recent = np.mean(losses[-(steps // 10 + 1):])
+            print(f"step {step + 1} of {steps}: {-10 * np.log10(recent):.2f} dB", flush=True)
     changed = int((codes.logits.argmax(0) != st.nearest_codes(begin, codes.codes, PERIOD)).sum())
     print(f"{changed} of {TILE * TILE} codes have changed")
     return codes.best(), delays
+
+
+def mean_of(rows, system, clip, figure):
+    """Over the seeds."""
+    return np.mean([row[figure] for row in rows if (row["system"], row["footage"]) == (system, str(clip))])
 
 
 def compare(schedule, out, clips, seeds, methods):
@@ -157,8 +164,7 @@ def compare(schedule, out, clips, seeds, methods):
     print(f"{'method':8} {'figure':16} {'hardware':>9} {'gain, dB':>9}  95 % interval over {len(clips)} clips")
     for method in methods:
         for figure in ("psnr_db", "psnr_gamma_db", "pu21_psnr_db"):
-            mean = {name: np.array([np.mean([row[figure] for row in rows if row["system"] == f"{name} {method}" and
-                                             row["footage"] == str(clip)]) for clip in clips])
+            mean = {name: np.array([mean_of(rows, f"{name} {method}", clip, figure) for clip in clips])
                     for name in ("hardware", "learned")}
             gain = mean["learned"] - mean["hardware"]
             half = (student.ppf(0.975, len(clips) - 1) * gain.std(ddof=1) / len(clips) ** 0.5 if len(clips) > 1

@@ -35,7 +35,7 @@ class TrainingItem(NamedTuple):
     of `truth`."""
 
     measurement: Array  #: light of each exposure, in its last slot; 0 elsewhere (ForwardModel.y)
-    mask: npt.NDArray[np.uint8]  #: bits: 1 open, 2 first and 4 last slot of an exposure, 8 saturated, 16 store B, 64 DN 0
+    mask: npt.NDArray[np.uint8]  #: bits: 1 open, 2 first and 4 last slot, 8 saturated, 16 store B, 64 DN 0
     noise: Array  #: variance of each sample, in its last slot; 0 elsewhere (ForwardModel.variance)
     truth: Array  #: light
 
@@ -231,15 +231,22 @@ def dataset(
     Raises ValueError for what is wrong, and for clips that are too small or too short; OSError for files.
     """
     videos = [footage] if isinstance(footage, np.ndarray) else _listed(footage, "footage")
-    size = _whole([slots, *crop], "slots, crop", 1)
+    size = _whole([slots, *(crop if isinstance(crop, (tuple, list)) else [])], "slots, crop", 1)
     if len(size) != 3 or size[0] > 128:
         raise ValueError(f"crop, slots: {crop} are not (rows, columns), or {slots} slots are more than 128")
+    if isinstance(seeds, int) and seeds < 1:
+        raise ValueError(f"seeds: {seeds} is below 1")
     numbers = _whole(range(1, seeds + 1) if isinstance(seeds, int) else seeds, "seeds", 0)
     if not (isinstance(shake, (int, float)) and 0 <= shake < math.inf):
         raise ValueError(f"shake: {shake} is not a number of pixels from 0 on")
     augmentation = Augmentation(_ends(speed, "speed"), _ends(light, "light"), _ends(contrast, "contrast"), float(shake))
     chips = [(s, plan) for plan in _listed(schedules, "schedules") for s in _listed(sensors, "sensors")]
-    clips = [_planar(load(video, transfer=transfer, luminance=luminance, scale=scale)) for video in videos]
+    clips = []
+    for number, video in enumerate(videos):
+        try:
+            clips.append(_planar(load(video, transfer=transfer, luminance=luminance, scale=scale)))
+        except ValueError as error:
+            raise ValueError(str(error).replace("video:", f"clip {number}:", 1)) from None
     window = (size[0], size[1], size[2])
     _check_clips(clips, videos, window, augmentation.speed[1])
     return Dataset(clips, chips, window, numbers, augmentation)

@@ -155,7 +155,8 @@ def _tiled(weights: Tensor, shape: Sequence[int]) -> Tensor:
     """The weights of each pixel of an array with these last two sides."""
     if weights.ndim != 4:
         raise ValueError(f"weights: {tuple(weights.shape)} is not (exposures, slots, rows, columns)")
-    rows, cols = (torch.arange(side, device=weights.device) % tile for side, tile in zip(shape[-2:], weights.shape[-2:]))
+    rows, cols = (torch.arange(side, device=weights.device) % tile
+                  for side, tile in zip(shape[-2:], weights.shape[-2:]))
     return weights[:, :, rows][:, :, :, cols]
 
 

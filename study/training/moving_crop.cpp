@@ -18,19 +18,19 @@ void check(bool is_right, const char* problem) {
 
 /// Whether `length` pixels from each of these on lie in 0 .. `end`.
 bool all_within(std::span<const double> begins, int length, int end) {
-    return std::ranges::all_of(
-        begins, [&](double begin) { return begin >= 0 && begin <= end - length; });
+    return std::ranges::all_of(begins,
+                               [&](double begin) { return begin >= 0 && begin <= end - length; });
 }
 
 void check(const Clip& clip, const MovingCrop& crop, FrameShape shape) {
     const auto is_positive = [](double value) { return value > 0 && std::isfinite(value); };
     check(!crop.top.empty() && crop.top.size() == crop.left.size(),
           "has no slots, or not a place for each");
-    check(is_positive(crop.frames_per_slot) && is_positive(crop.light) && is_positive(crop.contrast),
-          "has a speed, light or contrast that is not above 0");
+    check(
+        is_positive(crop.frames_per_slot) && is_positive(crop.light) && is_positive(crop.contrast),
+        "has a speed, light or contrast that is not above 0");
     check(shape.planes == clip.shape.planes, "has other planes than the clip");
-    check(shape.rows > 0 && shape.cols > 0 &&
-              all_within(crop.top, shape.rows, clip.shape.rows) &&
+    check(shape.rows > 0 && shape.cols > 0 && all_within(crop.top, shape.rows, clip.shape.rows) &&
               all_within(crop.left, shape.cols, clip.shape.cols),
           "reaches beyond the frames of the clip");
     const auto slots = static_cast<double>(crop.top.size());
@@ -50,8 +50,7 @@ void add(PlaneView<const float> frame, double top, double left, float weight, Pl
     for (int row = 0; row < to.rows(); ++row) {
         const auto sum = to.row(row);
         const float* above = frame.row(first_row + row).data() + first_col;
-        const float* below =
-            frame.row(first_row + row + (down > 0 ? 1 : 0)).data() + first_col;
+        const float* below = frame.row(first_row + row + (down > 0 ? 1 : 0)).data() + first_col;
         for (std::size_t col = 0; col < sum.size(); ++col) {
             const float here = upper * above[col] + lower * below[col];
             const float next = upper * above[col + step] + lower * below[col + step];
@@ -66,13 +65,13 @@ void take_slot(const Clip& clip, const MovingCrop& crop, int slot, std::span<flo
     const double begin = crop.first_frame + slot * crop.frames_per_slot;
     const double end = begin + crop.frames_per_slot;
     for (int frame = static_cast<int>(begin); frame < end && frame < clip.frames; ++frame) {
-        const double share = (std::min(end, frame + 1.0) - std::max(begin, 1.0 * frame)) /
-                             crop.frames_per_slot;
+        const double share =
+            (std::min(end, frame + 1.0) - std::max(begin, 1.0 * frame)) / crop.frames_per_slot;
         for (int plane = 0; plane < shape.planes; ++plane) {
             const std::size_t from =
                 index(frame) * clip.shape.sites() + index(plane) * clip.shape.pixels();
-            add({clip.light.data() + from, clip.shape.rows, clip.shape.cols},
-                crop.top[index(slot)], crop.left[index(slot)], static_cast<float>(share),
+            add({clip.light.data() + from, clip.shape.rows, clip.shape.cols}, crop.top[index(slot)],
+                crop.left[index(slot)], static_cast<float>(share),
                 {light.data() + index(plane) * shape.pixels(), shape.rows, shape.cols});
         }
     }

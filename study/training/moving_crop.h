@@ -17,7 +17,8 @@ struct Clip {
 /// How a camera that moves sees a part of a clip: slot i is the mean light of the frames from
 /// first_frame + i `frames_per_slot` to first_frame + (i + 1) `frames_per_slot`, each constant for
 /// its time; its upper left corner lies at (top[i], left[i]), between pixels by bilinear
-/// interpolation. `contrast` is a power of the light (2 doubles the stops), `light` a factor after it.
+/// interpolation. `contrast` is a power of the light (2 doubles the stops), `light` a factor after
+/// it.
 ///
 /// Not modelled: motion between two frames, motion of the camera during a slot.
 struct MovingCrop {

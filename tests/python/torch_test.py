@@ -1,11 +1,13 @@
 """A chip with gradients, the codes that sensors can run, and data sets of tensors."""
 
+import importlib.util
 import subprocess
 import sys
 import unittest
 
 import numpy as np
 import stipple
+from program import ProgramTest, project_path
 
 try:
     import torch
@@ -89,6 +91,7 @@ class CodedSensorTest(unittest.TestCase):
             samples = chip(torch.from_numpy(x), weights, torch.Generator().manual_seed(seed))
             dn = samples.y[-1].double() * chip._numbers["electrons_per_unit"]
             dn = (dn + chip._numbers["dark_e_per_slot"] * weights.sum(1)) / gain + chip._numbers["black_level_dn"]
+            dn -= 0.5 * chip._numbers["floor"]  # light is that of the middle of a level
             modelled.append(dn.flatten(1).numpy())
         for all_samples in (np.concatenate(emulated, 1), np.concatenate(modelled, 1)):
             yield all_samples.mean(1), all_samples.var(1)
@@ -186,7 +189,8 @@ class ProjectTest(unittest.TestCase):
                 best = min(range(len(codes)), key=lambda i: min(
                     np.sum((hard[i, list(order)] - soft[:, :, row, col]) ** 2) for order in ((0, 1), (1, 0))))
                 begins = sorted(int(np.argmax(exposure.numpy())) for exposure in codes[best])
-                self.assertEqual(begins, sorted(e["first_slot"] for e in exposures if (e["row"], e["col"]) == (row, col)))
+                there = (exposures["row"] == row) & (exposures["col"] == col)
+                self.assertEqual(begins, sorted(exposures["first_slot"][there]))
 
     def test_sensors_can_run_it(self):
         weights = st.weights_of(stipple.Schedule("tiled", {"tile_rows": 8, "tile_cols": 8}, size=SIZE))
@@ -226,7 +230,7 @@ class ProjectTest(unittest.TestCase):
         with self.assertRaisesRegex(ValueError, "not finite"):
             st.project(weights * float("nan"), 15)
         with self.assertRaisesRegex(ValueError, "weights: slot .*; give other lengths"):
-            st.project(weights, 15, "sp5000", size=(2048, 2560))
+            st.project(weights, 15, stipple.Sensor("lux1310", {"slot_us": 100}), size=(1024, 1280))
 
 
 @unittest.skipUnless(torch, "PyTorch (python3-torch) is not installed")
@@ -240,6 +244,22 @@ class DatasetTest(unittest.TestCase):
         self.assertEqual([tuple(batch.truth.shape) for batch in batches], [(3, 16, 8, 8)] * 2)
         for name in stipple.TrainingItem._fields:
             np.testing.assert_array_equal(getattr(batches[1], name)[2], getattr(data[5], name))
+
+
+@unittest.skipUnless(torch and importlib.util.find_spec("scipy"), "PyTorch or SciPy (python3-scipy) is not installed")
+class ExampleTest(ProgramTest):
+    def test_a_learned_schedule_runs_on_the_chip(self):
+        example = project_path("docs/examples/learned_schedule.py")
+        out = self.folder / "out"
+        done = subprocess.run([sys.executable, "-B", example, out, "--steps", "1", "--scenes", "1", "--seeds", "1"],
+                              capture_output=True, text=True)
+        self.assertEqual(done.returncode, 0, done.stderr)
+        self.assertIn("the sensor lux1310 can run learned", done.stdout)
+        self.assertRegex(done.stdout, r"fast +psnr_db +\d+\.\d\d +[+-]")
+        image = stipple.Schedule(out / "learned.mem", size=(1024, 1280))
+        file = stipple.Schedule(out / "learned.toml", size=(1024, 1280))
+        self.assertEqual(sorted(map(tuple, image.exposures())), sorted(map(tuple, file.exposures())))
+        self.assertIsNone(image.check("lux1310"))
 
 
 if __name__ == "__main__":

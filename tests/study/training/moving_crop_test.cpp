@@ -51,12 +51,11 @@ TEST(MovingCropTest, HasTheBitsOfTheFramesAtWholePixels) {
 
 TEST(MovingCropTest, InterpolatesBetweenPixelsAndAveragesFrames) {
     const auto light = ramp_light();
-    const MovingCrop crop{.first_frame = 0.5,
-                          .frames_per_slot = 2.5,
-                          .top = {0.3, 3, 2.9},
-                          .left = {1.25, 4.75, 5}};
+    const MovingCrop crop{
+        .first_frame = 0.5, .frames_per_slot = 2.5, .top = {0.3, 3, 2.9}, .left = {1.25, 4.75, 5}};
     const auto part = crop_of(light, crop);
-    // Frames 0.5 to 3: half of frame 0, all of 1 and 2; then 3, 4 and half of 5; half of 5, 6 and 7.
+    // Frames 0.5 to 3: half of frame 0, all of 1 and 2; then 3, 4 and half of 5; half of 5, 6
+    // and 7.
     const double frame[] = {(0 * 0.5 + 1 + 2) / 2.5, (3 + 4 + 5 * 0.5) / 2.5,
                             (5 * 0.5 + 6 + 7) / 2.5};
     for_each_site(3, kShape, [&](std::size_t i, int slot, int plane, int row, int col) {
