@@ -6,7 +6,7 @@ import math
 import operator
 import os
 import shutil
-from typing import TYPE_CHECKING, Any, Iterable, List, NamedTuple, Optional, Sequence, Tuple, TypeVar, Union
+from typing import TYPE_CHECKING, Any, Iterable, List, NamedTuple, Optional, Sequence, Tuple, Union
 
 import numpy as np
 import numpy.typing as npt
@@ -24,7 +24,6 @@ __all__ = ["Dataset", "TrainingItem", "dataset"]
 Name = Union[str, "PathLike[str]"]
 Array = npt.NDArray[np.float32]
 Range = Union[float, Tuple[float, float]]
-Value = TypeVar("Value")
 
 #: Share of the speed of a shaking camera that it keeps from slot to slot.
 INERTIA = 0.9
@@ -80,10 +79,10 @@ class Dataset:
     def __getitem__(self, index: int) -> TrainingItem:
         """The item of an index, also from the end. Raises IndexError for one that there is not."""
         truth, model = self._item(index)
-        samples = model.samples(), model.states(), model.variances()
+        y, mask, noise = model.samples(), model.states(), model.variances()
         if model.planes() > 1:
-            return TrainingItem(*(np.moveaxis(array, -3, -1) for array in samples), truth)  # type: ignore[call-arg]
-        return TrainingItem(*samples, truth)
+            y, mask, noise = (np.moveaxis(y, -3, -1), np.moveaxis(mask, -3, -1), np.moveaxis(noise, -3, -1))
+        return TrainingItem(y, mask, noise, truth)
 
     def model(self, index: int) -> ForwardModel:
         """The forward model with the samples, bounds and variances of an item."""
@@ -105,18 +104,20 @@ class Dataset:
         shape = self._clips[clip].shape
 
         def between(ends: Tuple[float, float]) -> float:
-            return ends[0] * (ends[1] / ends[0]) ** random.uniform() if ends[0] < ends[1] else ends[0]
+            return float(ends[0] * (ends[1] / ends[0]) ** random.uniform()) if ends[0] < ends[1] else ends[0]
 
         speed = between(self._augmentation.speed)
         last = shape[0] - slots * speed
         first = random.integers(0, max(int(last), 0) + 1)
-        tracks = []
-        for length, whole in ((rows, shape[-2]), (cols, shape[-1])):
+
+        def track(length: int, whole: int) -> List[float]:
             at = random.integers(0, whole - length + 1)
             way = at + self._augmentation.shake * _shaking(random, slots)
-            tracks.append(np.clip(way, 0, whole - length).tolist())
+            return [float(place) for place in np.clip(way, 0, whole - length)]
+
+        top, left = track(rows, shape[-2]), track(cols, shape[-1])
         factor, power = between(self._augmentation.light), between(self._augmentation.contrast)
-        return _stipple.MovingCrop(float(first), speed, *tracks, factor, power)
+        return _stipple.MovingCrop(float(first), speed, top, left, factor, power)
 
     def to_zarr(self, path: Name, indices: Optional[Iterable[int]] = None) -> None:
         """Writes the items of the indices, by default all, as a Zarr group of the arrays measurement, mask, noise
@@ -149,11 +150,11 @@ def _shaking(random: np.random.Generator, slots: int) -> npt.NDArray[np.float64]
     return np.asarray(way - way[slots // 2])
 
 
-def _listed(value: Union[Value, Sequence[Value]], name: str) -> List[Value]:
+def _listed(value: Any, name: str) -> List[Any]:
     values = list(value) if isinstance(value, (list, tuple)) else [value]
     if not values:
         raise ValueError(f"{name}: give at least one")
-    return values  # type: ignore[return-value]
+    return values
 
 
 def _ends(value: Range, name: str) -> Tuple[float, float]:
@@ -230,7 +231,7 @@ def dataset(
 
     Raises ValueError for what is wrong, and for clips that are too small or too short; OSError for files.
     """
-    videos = [footage] if isinstance(footage, np.ndarray) else _listed(footage, "footage")
+    videos = _listed(footage, "footage")
     size = _whole([slots, *(crop if isinstance(crop, (tuple, list)) else [])], "slots, crop", 1)
     if len(size) != 3 or size[0] > 128:
         raise ValueError(f"crop, slots: {crop} are not (rows, columns), or {slots} slots are more than 128")

@@ -280,7 +280,7 @@ def _schedule(codes: Tensor, period_slots: int, delay: Tuple[int, int], size: Tu
     return Schedule.from_exposures(np.array(rows, dtype=EXPOSURE), codes.shape[2:], period_slots, name=name, size=size)
 
 
-class Dataset(torch.utils.data.Dataset):  # type: ignore[misc, name-defined]
+class Dataset(torch.utils.data.Dataset):  # type: ignore[misc]
     """A stipple.Dataset of tensors: TrainingItem (measurement, mask, noise, truth), for a DataLoader."""
 
     def __init__(self, data: _Dataset) -> None:
