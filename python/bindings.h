@@ -29,6 +29,7 @@ void bind_camera_search(py::module_& module);
 void bind_record(py::module_& module);
 void bind_live_preview(py::module_& module);
 void bind_live(py::module_& module);
+void bind_training(py::module_& module);
 void bind_view(py::module_& module);
 
 }  // namespace stipple::python

@@ -57,10 +57,8 @@ std::unique_ptr<ForwardModel> model_of_stream(const StreamFile& stream, std::int
 std::unique_ptr<ForwardModel> model_of_sensor(const py::object& schedule, const py::object& sensor,
                                               std::int64_t slots, const FrameShape& shape) {
     check_window(slots, shape);
-    ChosenSensor chosen = sensor_of(sensor);
-    if (py::isinstance<ChosenSchedule>(schedule))
-        chosen.choice.seed = schedule.cast<const ChosenSchedule&>().choice.seed;
-    const SensorSetup setup = set_up(chosen, schedule, shape, ColourFilter::kNone);
+    const SensorSetup setup =
+        set_up(with_seed_of(schedule, sensor_of(sensor)), schedule, shape, ColourFilter::kNone);
     const StreamHeader header = stream_header_of(setup, "");
     std::vector<SamplePacket> packets;
     for (std::int64_t slot = 0; slot < slots; ++slot) {
@@ -165,6 +163,11 @@ void bind_forward_model(py::module_& module) {
         .def("samples",
              [](const ForwardModel& model) {
                  return Array(dimensions(model), model.samples().data());
+             })
+        .def("states",
+             [](const ForwardModel& model) {
+                 return py::array_t<std::uint8_t>(dimensions(model),
+                                                  model.measurements().state.data());
              })
         .def("is_sample", &voxels_with<Measurements::kLast>)
         .def("is_saturated", &voxels_with<Measurements::kSaturated>)

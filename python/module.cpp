@@ -47,6 +47,7 @@ PYBIND11_MODULE(_stipple, module) {
     bind_record(module);
     bind_live_preview(module);
     bind_live(module);
+    bind_training(module);
     bind_view(module);
     guard_classes(module);
 }

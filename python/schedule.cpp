@@ -198,6 +198,12 @@ py::array weights_of(const ExposureSchedule& schedule) {
     return array;
 }
 
+ChosenSensor with_seed_of(const py::object& schedule, ChosenSensor sensor) {
+    if (py::isinstance<ChosenSchedule>(schedule))
+        sensor.choice.seed = schedule.cast<const ChosenSchedule&>().choice.seed;
+    return sensor;
+}
+
 SensorSetup set_up(const ChosenSensor& sensor, const py::object& schedule, FrameShape footage,
                    ColourFilter mosaic) {
     SensorChoice choice = sensor.choice;

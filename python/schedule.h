@@ -26,6 +26,9 @@ struct ChosenSchedule {
 /// and 1 in open ones of a schedule without weights. \throws InputError if memory does not suffice.
 [[nodiscard]] pybind11::array weights_of(const ExposureSchedule& schedule);
 
+/// The sensor with the seed for which a ChosenSchedule of Python was made; unchanged with a name.
+[[nodiscard]] ChosenSensor with_seed_of(const pybind11::object& schedule, ChosenSensor sensor);
+
 /// The sensor with the schedule, a ChosenSchedule of Python or a name or path, for this footage.
 /// \throws InputError as set_up_sensor, or if the schedule was made for something else.
 [[nodiscard]] SensorSetup set_up(const ChosenSensor& sensor, const pybind11::object& schedule,

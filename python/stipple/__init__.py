@@ -11,6 +11,7 @@ ValueError, errors of files OSError, both with the program's texts."""
 from . import capture
 from ._characterize import characterize, characterize_images
 from ._chip import Chip
+from ._dataset import Dataset, TrainingItem, dataset
 from ._denoise import denoise
 from ._explore import explore
 from ._forward_model import ForwardModel
@@ -32,6 +33,7 @@ from ._view import View, view
 __all__ = [
     "Chip",
     "ComparedVideos",
+    "Dataset",
     "DenoiserStep",
     "ForwardModel",
     "Frame",
@@ -41,6 +43,7 @@ __all__ = [
     "Schedule",
     "Sensor",
     "Stream",
+    "TrainingItem",
     "VideoQuality",
     "View",
     "__version__",
@@ -48,6 +51,7 @@ __all__ = [
     "characterize",
     "characterize_images",
     "compare",
+    "dataset",
     "decode",
     "decode_methods",
     "denoise",

@@ -73,6 +73,12 @@ class ForwardModel:
             self._model = _stipple.ForwardModel.of_sensor(source, sensor, (*shape, 1)[:4])
         self._planar = self._model.planes() > 1
 
+    @classmethod
+    def _of(cls, model: _stipple.ForwardModel) -> ForwardModel:
+        made = cls.__new__(cls)
+        made._model, made._planar = model, model.planes() > 1
+        return made
+
     def _view(self, array: npt.NDArray[Value]) -> npt.NDArray[Value]:
         """As users have it: planes last."""
         return np.moveaxis(array, -3, -1) if self._planar else array
