@@ -4,6 +4,7 @@
 
 #include <cstdint>
 #include <memory>
+#include <span>
 #include <utility>
 #include <vector>
 
@@ -27,11 +28,10 @@ Clip clip_of(const Light& light) {
     if (light.ndim() != 3 && light.ndim() != 4)
         throw InputError("clip", "is not an array (frame, row, col) or (frame, plane, row, col)");
     const auto size = [&](py::ssize_t axis) { return static_cast<int>(light.shape(axis)); };
-    return {.light = {light.data(), static_cast<std::size_t>(light.size())},
-            .frames = size(0),
-            .shape = {.rows = size(light.ndim() - 2),
-                      .cols = size(light.ndim() - 1),
-                      .planes = light.ndim() == 4 ? size(1) : 1}};
+    const FrameShape shape{size(light.ndim() - 2), size(light.ndim() - 1),
+                           light.ndim() == 4 ? size(1) : 1};
+    const std::span<const float> values(light.data(), static_cast<std::size_t>(light.size()));
+    return {values, size(0), shape};
 }
 
 /// A sensor with its schedule, made for crops of a size.

@@ -89,7 +89,7 @@ class Codes(torch.nn.Module):
         super().__init__()
         self.codes = st.legal_codes(PERIOD, LENGTHS, EXPOSURES)
         chosen = st.nearest_codes(begin, self.codes, PERIOD)
-        self.logits = torch.nn.Parameter(6.0 * self.one_hot(chosen))
+        self.logits = torch.nn.Parameter(10.0 * self.one_hot(chosen))
 
     def one_hot(self, chosen):
         return torch.nn.functional.one_hot(chosen, len(self.codes)).permute(2, 0, 1).float()
@@ -177,7 +177,7 @@ def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("out", type=Path)
     parser.add_argument("clips", nargs="*", type=Path)
-    parser.add_argument("--steps", type=int, default=600)
+    parser.add_argument("--steps", type=int, default=300)
     parser.add_argument("--scenes", type=int, default=6, help="synthetic ones to compare on")
     parser.add_argument("--seeds", type=int, default=3)
     parser.add_argument("--methods", nargs="*", default=["fast"])

@@ -198,16 +198,15 @@ class ProjectTest(unittest.TestCase):
             made = st.project(weights, 15, sensor, size=size)
             self.assertIsNone(made.check(sensor))
             self.assertEqual(made.samples_per_pixel_slot, 4 / 15)
-        # Each tile is that on its left, later.
-        later = st.project(weights, 15, "lux1310", delay_slots=(0, 4), size=(1024, 1280))
-        self.assertEqual(later.tile, (8, 120))
-        grey = later.weights()
-        np.testing.assert_array_equal(st.weights_of(later).sum((0, 1)), 15)
-        self.assertEqual(grey.min(), 1)
-        exposures = {(e["row"], e["col"], e["first_slot"], e["open_slots"]) for e in later.exposures()}
+        # Each tile is that on its left and that above it, later.
+        later = st.project(weights, 15, "lux1310", delay_slots=(3, 4), size=(1024, 1280))
+        self.assertEqual(later.tile, (40, 120))
+        self.assertEqual(later.weights().min(), 1)  # without gaps
+        exposures = set(later.exposures().tolist())
+        self.assertEqual(len(exposures), 40 * 120 * 4)
         for row, col, first, open_slots in exposures:
-            if col < 112:
-                self.assertIn((row, col + 8, (first + 4) % 15, open_slots), exposures)
+            self.assertIn((row, (col + 8) % 120, (first + 4) % 15, open_slots), exposures)
+            self.assertIn(((row + 8) % 40, col, (first + 3) % 15, open_slots), exposures)
 
     def test_delayed_weights_are_those_of_the_projection(self):
         weights = st.weights_of(stipple.Schedule("tiled", {"tile_rows": 4, "tile_cols": 8}, size=SIZE))
