@@ -11,9 +11,12 @@ ValueError, errors of files OSError, both with the program's texts."""
 from . import capture
 from ._characterize import characterize, characterize_images
 from ._chip import Chip
-from ._explore import explore
+from ._decoder import Decoder
+from ._explore import explore, rivals
 from ._forward_model import ForwardModel
 from ._pipeline import Schedule, compare, decode, decode_methods, emulate, load, timing
+from ._report import report
+from ._rig import emulate_rig, synth
 from ._stipple import (
     ComparedVideos,
     Frame,
@@ -30,6 +33,7 @@ from ._view import View, view
 __all__ = [
     "Chip",
     "ComparedVideos",
+    "Decoder",
     "ForwardModel",
     "Frame",
     "MaxMemory",
@@ -48,8 +52,12 @@ __all__ = [
     "decode",
     "decode_methods",
     "emulate",
+    "emulate_rig",
     "explore",
     "load",
+    "report",
+    "rivals",
+    "synth",
     "timing",
     "view",
 ]
