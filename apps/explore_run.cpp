@@ -28,20 +28,6 @@ bool keep_going() {
     return stop_signal() == 0;
 }
 
-/// The values of a trial that others have not, as "random, 8".
-std::string name_of(const Exploration& exploration, std::uint64_t number) {
-    const std::vector<SpaceAxis>& axes = exploration.space().axes;
-    const SpacePoint values = exploration.values_of(number);
-    std::string name;
-    for (std::size_t i = 0; i < axes.size(); ++i) {
-        const bool is_seed = axes[i].name == "seed";
-        const bool varies = axes[i].values.size() > 1 || (is_seed && exploration.seeds() > 1);
-        if (!varies || values[i].empty()) continue;
-        name += (name.empty() ? "" : ", ") + (is_seed ? "seed " + values[i] : values[i]);
-    }
-    return name;
-}
-
 /// A trial that cannot be run is a row with the reason. \throws TrialStopped, DeviceError.
 void run_point(Exploration& exploration, std::uint64_t number, Progress& progress) {
     const Trial* const trial = exploration.begin(number);
@@ -49,7 +35,7 @@ void run_point(Exploration& exploration, std::uint64_t number, Progress& progres
     const double work = exploration.work_of(number);
     if (trial == nullptr) return progress.skip(work);
     const double before = progress.work_done();
-    progress.note("now " + name_of(exploration, number));
+    progress.note("now " + exploration.name_of(number));
     try {
         const auto stream = exploration.store().stream_of(trial->identity);
         exploration.put(
@@ -129,9 +115,7 @@ Exploration explored(const ExploreRun& what, const RunOptions& run) {
         run_points(exploration, progress);
     }
     exploration.rank_points();
-    exploration.store().write("table.csv", csv_table(exploration));
-    if (const std::string table = footage_table(exploration); !table.empty())
-        exploration.store().write("footage.csv", table);
+    write_tables(exploration);
     if (!what.no_report) {
         exploration.store().write("report.html",
                                   results_page(exploration, page_title(what), own_command()));

@@ -34,7 +34,8 @@ constexpr ShownColumn kColumns[] = {{"field %", &TrialFigures::field_of_view, 10
                                     {"Mbit/s", &TrialFigures::megabits_per_second, 1, 0},
                                     {"code", &TrialFigures::code_megabits_per_second, 1, 0},
                                     {"uJ/slot", &TrialFigures::energy_uj_per_slot, 1, 0},
-                                    {"decode s", &TrialFigures::decode_seconds, 1, 1}};
+                                    {"decode s", &TrialFigures::decode_seconds, 1, 1},
+                                    {"MB", &TrialFigures::decode_megabytes, 1, 0}};
 
 /// What is compared, and what the headings leave open.
 std::string legend_of(const Exploration& exploration) {

@@ -1,17 +1,15 @@
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <cstdint>
-#include <filesystem>
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "apps/arguments/common_options.h"
 #include "apps/arguments/footage.h"
 #include "apps/interrupt.h"
-#include "apps/output/camera_report.h"
 #include "apps/output/json_file.h"
 #include "apps/output/own_command.h"
 #include "apps/output/progress.h"
@@ -20,17 +18,12 @@
 #include "apps/subcommands.h"
 #include "core/error.h"
 #include "core/memory_limit.h"
-#include "core/text.h"
-#include "decoder/decode_options.h"
-#include "decoder/measurements.h"
-#include "decoder/reconstruct.h"
 #include "io/output_names.h"
-#include "io/text_file.h"
+#include "study/report/camera_file.h"
 #include "study/report/run_report.h"
-#include "study/report/stream_text.h"
+#include "study/report/stream_report.h"
 
 namespace stipple {
-namespace fs = std::filesystem;
 namespace {
 
 struct ReportArguments {
@@ -43,177 +36,47 @@ struct ReportArguments {
     RunReportOptions page;
 };
 
-bool exposes_alike(const fs::path& stream) {
-    const StreamReader reader(stream);
-    const ExposureSchedule& schedule = reader.header().schedule;
-    return schedule.tile_rows() == 1 && schedule.tile_cols() == 1;
-}
-
-/// The streams in a folder, by name, those of conventional cameras last.
-std::vector<fs::path> streams_in(const fs::path& folder) {
-    std::vector<fs::path> streams;
-    for (const auto& entry : fs::directory_iterator(folder))
-        if (entry.path().extension() == ".stipple" && entry.is_regular_file() &&
-            !entry.path().filename().string().starts_with('.'))
-            streams.push_back(entry.path());
-    if (streams.empty()) throw InputError(folder.string(), "holds no sample stream (.stipple)");
-    std::ranges::sort(streams);
-    std::stable_partition(streams.begin(), streams.end(),
-                          [](const fs::path& s) { return !exposes_alike(s); });
-    return streams;
-}
-
-std::vector<fs::path> streams_of(const std::vector<std::string>& runs) {
-    std::vector<fs::path> streams;
-    for (const std::string& run : runs) {
-        if (!fs::is_directory(run)) {
-            if (fs::exists(run) && !fs::is_regular_file(run))
-                throw InputError(run,
-                                 "cannot be read several times, as a report needs; record to a "
-                                 "file first");
-            streams.emplace_back(run);
-            continue;
-        }
-        const auto inside = streams_in(run);
-        streams.insert(streams.end(), inside.begin(), inside.end());
-    }
-    return streams;
-}
-
-/// The first frames of the truth. \throws InputError if they have another shape.
-FluxVideo read_truth(const ReportArguments& arguments, FrameShape shape) {
-    ReadAhead footage = read_footage(arguments.truth, arguments.footage);
-    if (footage.shape() != shape)
-        throw InputError(arguments.truth,
-                         shape_difference(footage.shape(), shape, "the runs have"));
-    constexpr std::uint64_t kValueBytes = 2 * sizeof(float);  // here, and in the video
-    const std::uint64_t bytes = input_bytes(arguments.truth);
-    std::vector<float> light;
-    std::int64_t slots = 0;
-    for (auto frame = footage.next(); !frame.empty() && slots < arguments.page.slots;
-         frame = footage.next()) {
-        throw_if_stopped();
-        check_memory(kValueBytes * (light.size() + frame.size()), arguments.truth,
-                     "the truth of a report", bytes);
-        light.insert(light.end(), frame.begin(), frame.end());
-        ++slots;
-    }
-    FluxVideo truth(static_cast<int>(slots), shape);
-    std::ranges::copy(light, truth.data().begin());
-    return truth;
-}
-
-/// Decodes the first slots of a stream. `put` takes slot and frame.
-template <typename Put>
-void decode_slots(const fs::path& stream, DecodeMethod method, std::int64_t slots,
-                  const RunOptions& run, const Put& put) {
-    StreamReader reader(stream);
-    DecodeOptions options;
-    options.method = method;
-    Progress progress(run, fmt::format("{}, {}", stream.filename().string(), named(method).name),
-                      std::min(reader.slots().value_or(slots), slots));
-    decode(
-        reader, options,
-        [&](std::int64_t slot, std::span<const float> frame) {
-            put(slot, frame);
-            return slot + 1 < slots && stop_signal() == 0;
-        },
-        [&](double done) {
-            progress.reach(done);
-            return stop_signal() == 0;
-        });
-    throw_if_stopped();
-}
-
-/// A stream in the report.
-struct ShownStream {
-    fs::path file;
-    std::string name;    ///< without extension; with its folder where two files have the same
-    std::size_t number;  ///< RunReport::add_run
-};
-
-/// All of them before the first is decoded, so that one that does not fit ends the run at once.
-std::vector<ShownStream> add_streams(RunReport& report, const std::vector<fs::path>& files) {
-    std::vector<ShownStream> streams;
-    streams.reserve(files.size());
-    for (const fs::path& file : files) {
-        const auto same = std::ranges::count_if(
-            files, [&](const fs::path& other) { return other.stem() == file.stem(); });
-        const std::string name =
-            (same == 1 ? file.stem() : file.parent_path() / file.stem()).string();
-        throw_if_stopped();
-        streams.push_back({file, name, report.add_run(file, name)});
-    }
-    return streams;
-}
-
-/// A stream by the naive method, which shows what the samples are, and by the chosen one, whose
-/// video it returns.
-std::size_t add_videos(RunReport& report, const ShownStream& stream,
-                       const ReportArguments& arguments, const RunOptions& run) {
-    const DecodeMethod chosen = decode_method_from_name(arguments.method);
-    std::vector<DecodeMethod> methods{DecodeMethod::kNaive};
-    if (chosen != DecodeMethod::kNaive) methods.push_back(chosen);
-    std::size_t video = 0;
-    for (const DecodeMethod method : methods) {
-        const std::string by(named(method).name);
-        video = report.add_video({fmt::format("{}, {}", stream.name, by),
-                                  fmt::format("{} decoded by {}", stream.name, by), stream.number});
-        decode_slots(stream.file, method, arguments.page.slots, run,
-                     [&](std::int64_t slot, auto frame) { report.put(video, slot, frame); });
-    }
-    return video;
-}
-
-RunReportOptions page_options(const ReportArguments& arguments,
-                              const std::vector<fs::path>& streams,
-                              const std::optional<FluxVideo>& truth) {
-    RunReportOptions options = arguments.page;
-    options.command = own_command();
-    if (!options.quality.max_value) {
-        double brightest = 0;
-        for (const fs::path& stream : streams)
-            brightest = std::max(brightest, brightest_light(StreamReader(stream).header()));
-        if (brightest > 0) options.quality.max_value = brightest;
-    }
-    if (truth) options.quality.margin = usual_margin(truth->slots());
-    return options;
+ReportTruth truth_of(const std::string& file, ReadAhead& footage) {
+    return {.name = file, .shape = footage.shape(), .bytes = input_bytes(file), .next = [&footage] {
+                return footage.next();
+            }};
 }
 
 void make_report(const ReportArguments& arguments, const RunOptions& run) {
     JsonFile json(run);
-    PendingOutput output(arguments.output, run.force);
-    const auto streams = streams_of(arguments.runs);
-    const FrameShape shape = decoded_shape(StreamReader(streams.front()).header());
-    std::optional<FluxVideo> truth;
-    if (!arguments.truth.empty()) truth = read_truth(arguments, shape);
-    RunReport report(page_options(arguments, streams, truth), shape, truth ? &*truth : nullptr);
-    if (!arguments.camera.empty()) report.set_camera(read_camera_file(arguments.camera).dump());
-    std::vector<std::size_t> decoded;
-    decoded.reserve(streams.size());
-    for (const ShownStream& stream : add_streams(report, streams))
-        decoded.push_back(add_videos(report, stream, arguments, run));
-    report.feature(decoded.front());
-    report.fit();
-    const auto data = nlohmann::ordered_json::parse(report.json());
-    const std::string page = report.page();
-    write_text(output, page);
-    for (const std::string& note : report.notes()) say_warning(note);
+    StreamReportTask task{.runs = arguments.runs,
+                          .output = arguments.output,
+                          .force = run.force,
+                          .methods = {decode_method_from_name(arguments.method)},
+                          .page = arguments.page};
+    task.page.command = own_command();
+    std::optional<ReadAhead> footage;
+    if (!arguments.truth.empty()) {
+        footage.emplace(arguments.truth, arguments.footage,
+                        [](const Message& warning) { say_warning(warning); });
+        task.truth = truth_of(arguments.truth, *footage);
+    }
+    if (!arguments.camera.empty()) task.camera = read_camera_file(arguments.camera);
+    std::optional<Progress> progress;
+    const StreamReportResult made =
+        report_streams(std::move(task), {.check = [] { throw_if_stopped(); },
+                                         .begin =
+                                             [&](const std::string& what, std::int64_t slots) {
+                                                 progress.emplace(run, what, slots);
+                                                 return [&](double done) {
+                                                     progress->reach(done);
+                                                     return stop_signal() == 0;
+                                                 };
+                                             }});
+    progress.reset();
+    for (const std::string& note : made.notes) say_warning(note);
     say_warning(chart_warning());
-    json.write({{"file", arguments.output},
-                {"bytes", page.size()},
-                {"slots", data["slots"]},
-                {"picture_step", data["picture_step"]},
-                {"area", data["area"]},
-                {"quality_options", data["quality_options"]},
-                {"videos", data["videos"]},
-                {"notes", report.notes()}});
-    run.say(fmt::format("{}: {} of {}, {:.1f} MB", arguments.output,
-                        counted(data["videos"].size(), "video"), counted(streams.size(), "run"),
-                        1e-6 * static_cast<double>(page.size())));
-    if (const std::string damage = report.damage(); !damage.empty())
+    json.write(nlohmann::ordered_json::parse(made.figures));
+    run.say(fmt::format("{}: {} of {}, {:.1f} MB", arguments.output, counted(made.videos, "video"),
+                        counted(made.runs, "run"), 1e-6 * static_cast<double>(made.bytes)));
+    if (!made.damage.empty())
         throw InputError(arguments.output,
-                         "shows only the undamaged part of damaged streams: " + damage);
+                         "shows only the undamaged part of damaged streams: " + made.damage);
 }
 
 void add_limits(Command& command, const std::shared_ptr<ReportArguments>& options) {

@@ -1,4 +1,3 @@
-#include <filesystem>
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <string>
@@ -12,19 +11,17 @@
 #include "apps/subcommands.h"
 #include "core/config.h"
 #include "study/explore/results.h"
+#include "study/explore/rivals.h"
 
 namespace stipple {
 namespace {
 
 struct RivalsArguments {
-    std::string footage;
+    RivalsChoice choice;
     std::string results;
     std::string space = "rivals";
-    std::string sensor = {};  ///< empty: that of the space
     FootageOptions reading = {};
     int seeds = 1;
-    std::vector<std::string> systems = {};  ///< empty: all
-    std::string dictionary = {};            ///< empty: that of the space
 };
 
 nlohmann::ordered_json json_of(const TableValue& value) {
@@ -50,18 +47,13 @@ nlohmann::ordered_json json_of(const Exploration& exploration) {
 }
 
 void compare_rivals(const RivalsArguments& arguments, const RunOptions& run) {
-    ExploreRun what{
-        .space = find_config(ConfigKind::kSpaces, arguments.space).string(),
-        .results = arguments.results,
-        .title = "Rivals: " + std::filesystem::path(arguments.footage).filename().string(),
-        .options = {}};
+    ExploreRun what{.space = find_config(ConfigKind::kSpaces, arguments.space).string(),
+                    .results = arguments.results,
+                    .title = arguments.choice.title(),
+                    .options = {}};
     what.options.reading = arguments.reading;
     what.options.seeds = arguments.seeds;
-    what.options.replaced = {{"footage", {arguments.footage}}};
-    if (!arguments.sensor.empty()) what.options.replaced.push_back({"sensor", {arguments.sensor}});
-    if (!arguments.systems.empty()) what.options.replaced.push_back({"system", arguments.systems});
-    if (!arguments.dictionary.empty())
-        what.options.replaced.push_back({"decoder.dictionary", {arguments.dictionary}});
+    what.options.replaced = arguments.choice.replaced();
     JsonFile json(run);
     const Exploration exploration = explored(what, run);
     json.write(json_of(exploration));
@@ -77,14 +69,15 @@ void add_rivals(Command& app, Action& action) {
         app.add_command("rivals", "Coded exposure and its rivals on a scene, with equal samples");
     const auto arguments = std::make_shared<RivalsArguments>();
     command
-        .add_option("FOOTAGE", arguments->footage, "footage, or a scene of \"stipple list scenes\"")
+        .add_option("FOOTAGE", arguments->choice.footage,
+                    "footage, or a scene of \"stipple list scenes\"")
         .required()
         .input();
     add_results(command, arguments->results);
     add_reading(command, arguments->reading);
     add_seeds(command, arguments->seeds);
     command
-        .add_option("--sensor", arguments->sensor,
+        .add_option("--sensor", arguments->choice.sensor,
                     "sensor of the systems, of \"stipple list sensors\"")
         .default_text("that of the space")
         .type_name("NAME|FILE")
@@ -96,11 +89,11 @@ void add_rivals(Command& app, Action& action) {
         .shows_default()
         .type_name("NAME|FILE")
         .input();
-    command.add_list("--system", arguments->systems, "only this one; may be repeated")
+    command.add_list("--system", arguments->choice.systems, "only this one; may be repeated")
         .type_name("NAME")
         .default_text("all");
     command
-        .add_option("--dictionary", arguments->dictionary,
+        .add_option("--dictionary", arguments->choice.dictionary,
                     "dictionary of hitomi2011, of \"stipple dictionary\"")
         .default_text("that of the space")
         .type_name("FILE")

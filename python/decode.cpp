@@ -24,6 +24,7 @@
 #include "python/sensor.h"
 #include "python/stream.h"
 #include "session/decode_session.h"
+#include "session/rig_folder.h"
 #include "session/video_shards.h"
 #include "stream/stream_figures.h"
 
@@ -92,14 +93,15 @@ DecodeSession session_of(const StreamFile& stream, const DecodeTask& task) {
     return calibration && !calibration->empty() ? reading(*calibration, open) : open();
 }
 
-py::array decode_stream(const StreamFile& stream, const DecodeTask& task, const py::object& tell) {
-    DecodeSession session = session_of(stream, task);
+/// Of one stream or a rig, which messages call `name`.
+py::array decode_session(DecodeSession session, const std::string& name, const DecodeTask& task,
+                         const py::object& tell) {
     if (task.until) session.end_after(*task.until);
     for (const Message& warning : session.warnings()) warn(warning);
     auto frames = std::make_unique<std::vector<float>>();
     if (const auto count = session.frames()) {
         const std::uint64_t values = static_cast<std::uint64_t>(*count) * session.shape().sites();
-        check_memory(values * sizeof(float), stream.name(), "the decoded video");
+        check_memory(values * sizeof(float), name, "the decoded video");
         frames->reserve(values);
     }
     CallProgress progress(tell, session.frames());
@@ -113,9 +115,26 @@ py::array decode_stream(const StreamFile& stream, const DecodeTask& task, const 
             [&](double done) { return progress.reach(done); });
     }
     progress.finish();
-    const std::string warning = warning_of(session.streams().front().report(), !task.until);
-    if (!warning.empty()) warn(fmt::format("{}: {}", stream.name(), warning));
+    const bool is_rig = session.streams().size() > 1;
+    for (const StreamReader& stream : session.streams()) {
+        const std::string warning = warning_of(stream.report(), !task.until);
+        if (!warning.empty()) warn(fmt::format("{}: {}", is_rig ? stream.name() : name, warning));
+    }
     return as_array(std::move(frames), session.shape());
+}
+
+py::array decode_stream(const StreamFile& stream, const DecodeTask& task, const py::object& tell) {
+    return decode_session(session_of(stream, task), stream.name(), task, tell);
+}
+
+/// Of the streams in the folder of a rig.
+py::array decode_rig(const std::filesystem::path& folder, const DecodeTask& task,
+                     const py::object& tell) {
+    if (task.calibration)
+        throw InputError("calibration", "is of one stream, but " + folder.string() +
+                                            " is the folder of a rig; leave it out");
+    return decode_session({open_rig_folder(folder, task.policy(), check_signals), task.setup},
+                          folder.string(), task, tell);
 }
 
 /// Files of a sharded decoding, as its folder has them.
@@ -170,6 +189,7 @@ void bind_decode(py::module_& module) {
         .def("holds", &PythonShards::holds)
         .def("write", &PythonShards::write);
     module.def("decode", &decode_stream);
+    module.def("decode_rig", &decode_rig);
     module.def("decode_methods", [] {
         std::vector<std::string> names;
         for (const NamedDecodeMethod& method : decode_methods()) names.emplace_back(method.name);

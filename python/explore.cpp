@@ -10,14 +10,18 @@
 #include <string>
 #include <tuple>
 #include <utility>
+#include <vector>
 
+#include "core/config.h"
 #include "core/error.h"
 #include "python/bindings.h"
 #include "python/call_progress.h"
 #include "python/errors.h"
 #include "python/footage.h"
+#include "python/own_decoder.h"
 #include "study/explore/exploration.h"
 #include "study/explore/results.h"
+#include "study/explore/rivals.h"
 
 namespace stipple::python {
 namespace {
@@ -88,16 +92,22 @@ class RunExploration {
     }
     /// Runs the trial of the last `begin`, and takes its outcome.
     void run(std::uint64_t number) {
-        unlocked([&] {
-            try {
-                const Trial& trial = exploration_.trial();
-                exploration_.put(number, run_trial(trial, exploration_.light(),
-                                                   exploration_.store().stream_of(trial.identity),
-                                                   [this] { return progress_->reach(done_); }));
-            } catch (const InputError& e) {
-                exploration_.fail(number, e.message());
-            }
-        });
+        try {
+            unlocked([&] {
+                try {
+                    const Trial& trial = exploration_.trial();
+                    const auto stream = exploration_.store().stream_of(trial.identity);
+                    exploration_.put(number, run_trial(trial, exploration_.light(), stream,
+                                                       [this] { return progress_->reach(done_); }));
+                } catch (const InputError& e) {
+                    exploration_.fail(number, e.message());
+                }
+            });
+        } catch (const DecoderFault& fault) {
+            throw py::value_error(fmt::format("{}; in {}", fault.what(), where(number)));
+        } catch (DecoderRaised& raised) {
+            raised.raise(" in " + where(number));
+        }
         advance();
     }
     void put(std::uint64_t number, const PlainOutcome& outcome) {
@@ -108,16 +118,23 @@ class RunExploration {
         exploration_.fail(number, problem);
         advance();
     }
-    void write(bool report) const {
-        exploration_.store().write("table.csv", csv_table(exploration_));
+    void write(bool report, const std::string& title) {
+        exploration_.rank_points();
+        write_tables(exploration_);
         if (report)
-            exploration_.store().write("report.html",
-                                       results_page(exploration_, space_.filename().string(), ""));
+            exploration_.store().write(
+                "report.html",
+                results_page(exploration_, title.empty() ? space_.filename().string() : title, ""));
     }
     [[nodiscard]] py::list rows() const;
     [[nodiscard]] const Exploration& exploration() const { return exploration_; }
 
   private:
+    /// For messages: which trial.
+    [[nodiscard]] std::string where(std::uint64_t number) const {
+        const std::string name = exploration_.name_of(number);
+        return fmt::format("trial {}{}", number + 1, name.empty() ? "" : " (" + name + ")");
+    }
     template <typename Work>
     void unlocked(const Work& work) {
         try {
@@ -171,6 +188,26 @@ ExploreOptions options_of(bool force, const std::string& budget, const std::stri
     return options;
 }
 
+void set_seeds(ExploreOptions& options, int seeds) {
+    if (seeds < 1) throw InputError("seeds", fmt::format("{} is not 1 or more", seeds));
+    options.seeds = seeds;
+}
+
+void add_decoder(ExploreOptions& options, const std::string& name, const std::string& version,
+                 const py::object& decode) {
+    options.methods.push_back(name);
+    options.decoders.push_back(own_decoder(name, version, decode));
+}
+
+/// Returns the title of the page.
+std::string choose_rivals(ExploreOptions& options, const std::string& footage,
+                          const std::string& sensor, const std::vector<std::string>& systems,
+                          const std::string& dictionary) {
+    const RivalsChoice choice{footage, sensor, systems, dictionary};
+    options.replaced = choice.replaced();
+    return choice.title();
+}
+
 /// Number of a point, slots of the clip, and begin and end of those that are compared.
 using PointOfClip = std::tuple<std::uint64_t, int, int, int>;
 
@@ -207,7 +244,15 @@ TrialLight light_of(const Space& space, const std::string& footage) {
 }  // namespace
 
 void bind_explore(py::module_& module) {
-    py::class_<ExploreOptions>(module, "ExploreOptions").def(py::init(&options_of));
+    py::class_<ExploreOptions>(module, "ExploreOptions")
+        .def(py::init(&options_of))
+        .def("set_reading", [](ExploreOptions& options,
+                               const Reading& reading) { options.reading = reading.options; })
+        .def("set_seeds", &set_seeds)
+        .def("add_method", [](ExploreOptions& options,
+                              const std::string& method) { options.methods.push_back(method); })
+        .def("add_decoder", &add_decoder)
+        .def("choose_rivals", &choose_rivals);
     py::class_<RunExploration>(module, "Exploration")
         .def(py::init<const std::filesystem::path&, const std::filesystem::path&, ExploreOptions,
                       py::object>())
@@ -235,6 +280,9 @@ void bind_explore(py::module_& module) {
         });
     py::class_<TrialLight>(module, "TrialLight").def(py::init(&light_of));
     module.def("is_scene", &is_scene);
+    module.def("find_space", [](const std::string& name) {
+        return find_config(ConfigKind::kSpaces, name).string();
+    });
     module.def("run_point", &run_point);
 }
 

@@ -77,6 +77,19 @@ void set_raw(Reading& reading, const std::optional<std::string>& text) {
     if (text) reading.options.raw = parse_raw_format(*text);
 }
 
+void set_part(Reading& reading, const std::optional<std::string>& frames,
+              const std::optional<std::string>& crop, int bin, const py::object& resize) {
+    FootagePart& part = reading.options.part;
+    if (frames) part.frames = parse_frame_range(*frames);
+    if (crop) part.crop = parse_crop_area(*crop);
+    if (bin < 1 || bin > FootagePart::kMaxBin)
+        throw InputError("bin", fmt::format("{} is not 1 to {}", bin, FootagePart::kMaxBin));
+    part.bin = bin;
+    if (resize.is_none()) return;
+    const auto [rows, cols] = size_in(resize, "resize");
+    part.size = checked_shape(rows, cols, 1, "resize");
+}
+
 void set_resampling(Reading& reading, const std::optional<std::string>& method) {
     if (!method) return;
     reading.resampling = value_in(kResamplings, *method, "resample");
@@ -217,6 +230,7 @@ void bind_footage(py::module_& module) {
         .def("set_scale", &set_scale)
         .def("set_raw", &set_raw)
         .def("set_min_value", &set_min_value)
+        .def("set_part", &set_part)
         .def("set_rate", &set_rate)
         .def("take_negative", [](Reading& reading) { reading.options.negative = true; })
         .def("set_resampling", &set_resampling);

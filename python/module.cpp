@@ -45,6 +45,9 @@ PYBIND11_MODULE(_stipple, module) {
     bind_camera_frames(module);
     bind_camera_search(module);
     bind_record(module);
+    bind_report(module);
+    bind_rig(module);
+    bind_synth(module);
     bind_live_preview(module);
     bind_live(module);
     bind_training(module);

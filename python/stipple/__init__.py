@@ -12,10 +12,13 @@ from . import capture
 from ._characterize import characterize, characterize_images
 from ._chip import Chip
 from ._dataset import Dataset, TrainingItem, dataset
+from ._decoder import Decoder
 from ._denoise import denoise
-from ._explore import explore
+from ._explore import explore, rivals
 from ._forward_model import ForwardModel
 from ._pipeline import Schedule, compare, decode, decode_methods, emulate, load, timing
+from ._report import report
+from ._rig import emulate_rig, synth
 from ._stipple import (
     ComparedVideos,
     DenoiserStep,
@@ -34,6 +37,7 @@ __all__ = [
     "Chip",
     "ComparedVideos",
     "Dataset",
+    "Decoder",
     "DenoiserStep",
     "ForwardModel",
     "Frame",
@@ -56,8 +60,12 @@ __all__ = [
     "decode_methods",
     "denoise",
     "emulate",
+    "emulate_rig",
     "explore",
     "load",
+    "report",
+    "rivals",
+    "synth",
     "timing",
     "view",
 ]

@@ -4,12 +4,14 @@ import tempfile
 from collections import deque
 from functools import lru_cache
 from os import PathLike, fsdecode, path
-from typing import Any, Callable, Deque, Optional, Tuple, Union
+from typing import Any, Callable, Deque, Iterable, Optional, Tuple, Union
 
 from . import _stipple
+from ._decoder import Method, caller_of, decoders_of
+from ._pipeline import _reading
 from ._workers import Fingerprint, check_workers, require_same
 
-__all__ = ["explore", "explore_on"]
+__all__ = ["explore", "explore_on", "rivals"]
 
 Name = Union[str, "PathLike[str]"]
 Tell = Optional[Callable[[float, Optional[int]], object]]
@@ -18,10 +20,51 @@ Tell = Optional[Callable[[float, Optional[int]], object]]
 IN_FLIGHT = 512
 
 
+def _options(
+    methods: Iterable[Method],
+    seeds: int,
+    force: bool,
+    reading: _stipple.Reading,
+    budget: str = "",
+    rank: str = "",
+) -> _stipple.ExploreOptions:
+    options = _stipple.ExploreOptions(force, budget, rank)
+    options.set_reading(reading)
+    options.set_seeds(seeds)
+    for method in decoders_of(methods):
+        if isinstance(method, str):
+            options.add_method(method)
+        else:
+            options.add_decoder(method.name, method.version, caller_of(method))
+    return options
+
+
+def _run(exploration: _stipple.Exploration, report: bool, title: str = "") -> "list[dict[str, Any]]":
+    try:
+        while exploration.next_rung():
+            for number in exploration.due():
+                if exploration.begin(number):
+                    exploration.run(number)
+    finally:
+        exploration.write(report, title)
+    return _rows(exploration)
+
+
 def explore(
     space: Name,
     results: Name,
     *,
+    methods: Iterable[Method] = (),
+    seeds: int = 1,
+    transfer: Optional[str] = None,
+    luminance: bool = False,
+    min_value: Optional[float] = None,
+    raw: Optional[str] = None,
+    scale: float = 1.0,
+    frames: Optional[str] = None,
+    crop: Optional[str] = None,
+    bin: int = 1,
+    resize: Optional[Tuple[int, int]] = None,
     force: bool = False,
     budget: str = "",
     rank: str = "",
@@ -31,27 +74,85 @@ def explore(
 ) -> "list[dict[str, Any]]":
     """Runs the trials of a space that `results` lacks, as "stipple explore" does, and returns the table.
 
-    space: the path of a TOML file (docs/explore.md).
+    space: the path of a TOML file (docs/explore.md), or a name of "stipple list spaces".
     results: the path of the folder of results.
+    methods: names of methods and decoders of one's own, a Decoder or a function from a Stream to an array, in place of
+        the methods of the space. If it has systems, each one of one sensor with the method "best" has a copy for each
+        of them: that of "coded best" by "own" is "coded own".
+    seeds: trials of each point, for means, intervals and tied ranks.
+    transfer, luminance, min_value, raw, scale: of the footage, as for `emulate`.
+    frames, crop, bin, resize: the part of the footage, "A:B", "WxH+X+Y", a number of pixels and (rows, columns).
     force: run all trials again.
     budget: "10m", or a number of decoded clips as text; without it all points have the whole clip.
-    rank: the column by which the better half of the points is chosen.
+    rank: the column by which the better half of the points is chosen, and by which seeds rank.
     report: write report.html too.
-    threads: 0 means all cores. The figures but decode_seconds do not depend on it.
+    threads: 0 means all cores. The figures but decode_seconds and decode_megabytes do not depend on it.
     progress: as for `emulate`, with trials for slots.
 
-    A row is a dict of the columns of table.csv; a figure that is not known is None. Raises ValueError and OSError.
+    A row is a dict of the columns of table.csv; a figure that is not known is None. Raises ValueError and OSError. What
+    a decoder of one's own raises is the cause of a RuntimeError, and a result that is no video of its stream a
+    ValueError; both name decoder and trial, and what was done before is kept.
     """
+    reading = _reading(transfer, luminance, None, raw, min_value, scale)
+    reading.set_part(frames, crop, bin, resize)
+    options = _options(methods, seeds, force, reading, budget, rank)
     with _stipple.Threads(threads):
-        exploration = _stipple.Exploration(space, results, _stipple.ExploreOptions(force, budget, rank), progress)
-        try:
-            while exploration.next_rung():
-                for number in exploration.due():
-                    if exploration.begin(number):
-                        exploration.run(number)
-        finally:
-            exploration.write(report)
-    return _rows(exploration)
+        return _run(_stipple.Exploration(_space_file(space), results, options, progress), report)
+
+
+def rivals(
+    footage: Name,
+    results: Name,
+    *,
+    sensor: Name = "",
+    space: Name = "rivals",
+    systems: Iterable[str] = (),
+    dictionary: Name = "",
+    methods: Iterable[Method] = (),
+    seeds: int = 1,
+    transfer: Optional[str] = None,
+    luminance: bool = False,
+    min_value: Optional[float] = None,
+    raw: Optional[str] = None,
+    scale: float = 1.0,
+    frames: Optional[str] = None,
+    crop: Optional[str] = None,
+    bin: int = 1,
+    resize: Optional[Tuple[int, int]] = None,
+    force: bool = False,
+    report: bool = True,
+    threads: int = 0,
+    progress: Tell = None,
+) -> "list[dict[str, Any]]":
+    """Coded exposure and its rivals on a scene, as "stipple rivals" does; returns the table.
+
+    footage: a path, or a scene of "stipple list scenes".
+    results: the path of the folder of results.
+    sensor: name or path of the sensor of the systems; by default that of the space.
+    space: the systems, the name or path of a space.
+    systems: names of systems, only these; by default all. Those that `methods` adds are among them.
+    dictionary: of hitomi2011, a file that "stipple dictionary" wrote.
+    methods, seeds, transfer, luminance, min_value, raw, scale, frames, crop, bin, resize, force, report, threads,
+        progress: as for `explore`.
+
+    Rows and errors are as those of `explore`.
+    """
+    reading = _reading(transfer, luminance, None, raw, min_value, scale)
+    reading.set_part(frames, crop, bin, resize)
+    options = _options(methods, seeds, force, reading)
+    title = options.choose_rivals(fsdecode(footage), fsdecode(sensor), _texts(systems), fsdecode(dictionary))
+    with _stipple.Threads(threads):
+        return _run(_stipple.Exploration(_space_file(space), results, options, progress), report, title)
+
+
+def _space_file(space: Name) -> str:
+    return _stipple.find_space(fsdecode(space))
+
+
+def _texts(systems: Iterable[str]) -> "list[str]":
+    if isinstance(systems, str):
+        raise TypeError(f"systems: {systems!r} is a text; give a list")
+    return list(systems)
 
 
 def explore_on(
@@ -72,7 +173,7 @@ def explore_on(
         same paths. `results` is needed here alone.
     threads: of each task; 0 means all cores of its worker.
 
-    The table is that of `explore`, but for decode_seconds. Raises as `check_workers`, and as `explore`.
+    The table is that of `explore`, but for decode_seconds and decode_megabytes. Raises as `check_workers`, and as `explore`.
     """
     caller = check_workers(client)
     exploration = _stipple.Exploration(space, results, _stipple.ExploreOptions(force, budget, rank), progress)
@@ -103,7 +204,7 @@ def explore_on(
             while flying:
                 land()
     finally:
-        exploration.write(report)
+        exploration.write(report, "")
     return _rows(exploration)
 
 
@@ -134,7 +235,7 @@ def _rows(exploration: _stipple.Exploration) -> "list[dict[str, Any]]":
     rows = exploration.rows()
     for row in rows:
         for name, value in row.items():
-            if isinstance(value, str) and name not in ("limited_by", "compared_slots", "problem"):
+            if isinstance(value, str) and name not in ("limited_by", "compared_slots", "rank", "problem"):
                 row[name] = _value(value)
     return rows
 

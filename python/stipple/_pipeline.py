@@ -218,7 +218,7 @@ def decode(
     the program writes to a .npy file. Colour lies plane by plane in memory, as it was decoded; use
     np.ascontiguousarray where other code wants it pixel by pixel.
 
-    stream: a Stream, or the path of one.
+    stream: a Stream, the path of one, or the folder of a rig.
     method: one of decode_methods(), from the fastest to the best.
     options: of the method, {"iterations": 20}; "stipple list keys decoder" lists them.
     until: decode only so many slots.
@@ -238,8 +238,10 @@ def decode(
     _denoise.check_given(method, options, denoiser)
     if denoiser is not None:
         task.set_denoiser(_denoise.as_called(denoiser))
-    source = stream if isinstance(stream, Stream) else Stream.open(stream)
     with _stipple.Threads(threads):
+        if not isinstance(stream, Stream) and _stipple.is_rig_folder(stream):
+            return _stipple.decode_rig(stream, task, progress)
+        source = stream if isinstance(stream, Stream) else Stream.open(stream)
         return _stipple.decode(source, task, progress)
 
 

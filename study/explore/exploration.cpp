@@ -38,8 +38,17 @@ ExploreOptions checked(ExploreOptions options) {
     throw InputError(Parameter{"rank"}, fmt::format("\"{}\" is none of {}", name, names));
 }
 
-Space replaced(Space space, const std::vector<SpaceAxis>& axes) {
-    for (const SpaceAxis& axis : axes) space.replace(axis);
+/// The space with what the options change.
+Space changed(Space space, const ExploreOptions& options) {
+    space.decoders = options.decoders;
+    for (const OwnDecoder& decoder : space.decoders) {
+        check_decoder(decoder);
+        if (std::ranges::count(space.decoders, decoder.name, &OwnDecoder::name) > 1)
+            throw InputError(fmt::format("decoder \"{}\"", decoder.name),
+                             "has the name of another one; give each its own");
+    }
+    if (!options.methods.empty()) space.set_methods(options.methods);
+    for (const SpaceAxis& axis : options.replaced) space.replace(axis);
     return space;
 }
 
@@ -73,7 +82,7 @@ Exploration::Exploration(const std::filesystem::path& space, const std::filesyst
                          ExploreOptions options, KeepGoing keep_going)
     : options_(checked(std::move(options))),
       text_(file_text(space)),
-      space_(replaced(parse_space(text_, space.string()), options_.replaced)),
+      space_(changed(parse_space(text_, space.string()), options_)),
       store_(results),
       keep_going_(std::move(keep_going)),
       rungs_(options_.budget ? rungs_of(space_.frames) : std::vector<int>{space_.frames}),
@@ -195,6 +204,19 @@ SpacePoint Exploration::values_of(std::uint64_t number) const {
     return values;
 }
 
+std::string Exploration::name_of(std::uint64_t number) const {
+    const SpacePoint values = values_of(number);
+    std::string name;
+    for (std::size_t i = 0; i < values.size(); ++i) {
+        const SpaceAxis& axis = space_.axes[i];
+        const bool is_seed = axis.name == "seed";
+        const bool varies = axis.values.size() > 1 || (is_seed && options_.seeds > 1);
+        if (!varies || values[i].empty()) continue;
+        name += (name.empty() ? "" : ", ") + (is_seed ? "seed " + values[i] : values[i]);
+    }
+    return name;
+}
+
 /// \throws InputError, TrialStopped.
 Trial Exploration::trial_of(std::uint64_t number, int slots) {
     const SpacePoint values = values_of(number);
@@ -204,13 +226,19 @@ Trial Exploration::trial_of(std::uint64_t number, int slots) {
     return set_up_trial(space_, values, *light_, slots, compared_[slots]);
 }
 
+/// Those of RESULTS, unless nobody knows whether its decoder has stayed the same.
+std::optional<TrialFigures> Exploration::known_figures(const Trial& trial) const {
+    if (trial.own && trial.own->version.empty()) return std::nullopt;
+    return store_.find(trial.identity);
+}
+
 /// Shows the figures of the whole clip if RESULTS has them for all seeds of the point of a trial.
 void Exploration::find_whole(std::uint64_t number) {
     std::vector<SeedTrial> trials;
     try {
         for (std::uint64_t seed = 0; seed < seed_count(); ++seed) {
             const Trial trial = trial_of(number + seed, space_.frames);
-            const auto figures = store_.find(trial.identity);
+            const auto figures = known_figures(trial);
             if (!figures) return;
             trials.push_back(known(trial, *figures));
         }
@@ -241,7 +269,7 @@ const Trial* Exploration::begin(std::uint64_t number) {
         point.compared = trial_->compared;
     }
     if (!options_.force)
-        if (const auto figures = store_.find(trial_->identity)) {
+        if (const auto figures = known_figures(*trial_)) {
             ++known_;
             take(number, known(*trial_, *figures));
             return nullptr;

@@ -16,11 +16,13 @@
 namespace stipple {
 
 struct ExploreOptions {
-    std::vector<SpaceAxis> replaced;  ///< axes with other values than in the space
-    FootageOptions reading = {};      ///< of all footage
-    bool force = false;               ///< run trials again that RESULTS has
-    int seeds = 1;                    ///< trials of a point: with its seed, the next one ...
-    std::optional<Budget> budget;     ///< none: each point with the whole clip
+    std::vector<SpaceAxis> replaced;   ///< axes with other values than in the space
+    std::vector<std::string> methods;  ///< for Space::set_methods; empty: those of the space
+    std::vector<OwnDecoder> decoders;  ///< that the space may name as methods
+    FootageOptions reading = {};       ///< of all footage
+    bool force = false;                ///< run trials again that RESULTS has
+    int seeds = 1;                     ///< trials of a point: with its seed, the next one ...
+    std::optional<Budget> budget;      ///< none: each point with the whole clip
     /// Name of the column by which points are ranked after a rung; empty: by dominance in rate, dB
     /// and energy.
     std::string rank;
@@ -73,7 +75,8 @@ struct ExploreCounts {
 ///                 exploration.put(number, run_trial(*trial, exploration.light(), ...));
 class Exploration {
   public:
-    /// \throws InputError as parse_space and TrialStore, and for an unknown column to rank by.
+    /// \throws InputError as parse_space, check_decoder and TrialStore, for two decoders of one
+    /// name and for an unknown column to rank by.
     Exploration(const std::filesystem::path& space, const std::filesystem::path& results,
                 ExploreOptions options, KeepGoing keep_going);
 
@@ -108,6 +111,8 @@ class Exploration {
     [[nodiscard]] int seeds() const { return options_.seeds; }
     /// The values of the point of a trial, with its seed.
     [[nodiscard]] SpacePoint values_of(std::uint64_t number) const;
+    /// The values of a trial that others have not, as "random, 8".
+    [[nodiscard]] std::string name_of(std::uint64_t number) const;
     /// The last rung that a point has figures of; 0: none.
     [[nodiscard]] int last_rung() const;
     [[nodiscard]] const std::string& space_text() const { return text_; }
@@ -142,6 +147,7 @@ class Exploration {
     void take(std::uint64_t number, SeedTrial trial);
     void show(std::uint64_t number, int rung, std::vector<SeedTrial> trials);
     void find_whole(std::uint64_t number);
+    [[nodiscard]] std::optional<TrialFigures> known_figures(const Trial& trial) const;
     [[nodiscard]] Trial trial_of(std::uint64_t number, int slots);
     [[nodiscard]] ExploredPoint& point_of(std::uint64_t number) {
         return points_[number / seed_count()];

@@ -120,8 +120,13 @@ std::string point_commands(const Space& space, const SpacePoint& point, const Po
         is_scene(space.value(point, "footage")) ? "" : options_of(clip.reading);
     const std::string seeds = clip.seeds > 1 ? fmt::format(" --seeds {}", clip.seeds) : "";
     std::string text =
-        fmt::format("cat > point.toml <<'END'\n{}END\nstipple explore point.toml -o point{}{}\n",
-                    point_space(space, point, clip), reading, seeds);
+        fmt::format("cat > point.toml <<'END'\n{}END\n", point_space(space, point, clip));
+    if (const OwnDecoder* own = space.own_decoder(point))
+        return text + fmt::format(
+                          "# Then stipple.explore in Python, with the decoder \"{}\" as its "
+                          "methods.\n",
+                          own->name);
+    text += fmt::format("stipple explore point.toml -o point{}{}\n", reading, seeds);
     if (clip.is_whole && has_steps(space, point))
         text += fmt::format("\n# {} step by step\n",
                             seeds.empty() ? "the same" : "that of the first seed") +

@@ -250,6 +250,12 @@ std::string footage_table(const Exploration& exploration) {
     return text;
 }
 
+void write_tables(const Exploration& exploration) {
+    exploration.store().write("table.csv", csv_table(exploration));
+    if (const std::string table = footage_table(exploration); !table.empty())
+        exploration.store().write("footage.csv", table);
+}
+
 std::string results_page(const Exploration& exploration, const std::string& title,
                          const std::string& command, const PageBounds& bounds) {
     const auto& points = exploration.points();

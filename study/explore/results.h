@@ -34,6 +34,10 @@ struct TableCell {
 /// The points that were reached as RFC 4180 has it, the names of the columns first.
 [[nodiscard]] std::string csv_table(const Exploration& exploration);
 
+/// Writes table.csv and, where footage_table has it, footage.csv into the results. \throws
+/// DeviceError.
+void write_tables(const Exploration& exploration);
+
 /// What the page of an exploration holds at most. The best points come first.
 struct PageBounds {
     std::size_t points = 5000;                           ///< the table holds all

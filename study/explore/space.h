@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "core/geometry.h"
+#include "study/decoders/own_decoder.h"
 
 namespace stipple {
 
@@ -55,10 +56,15 @@ struct Space {
     /// The window whose readout is timed; 0: that of the clip.
     FrameShape readout{.rows = 0, .cols = 0, .planes = 1};
     std::string readout_sensor;  ///< the sensor whose clocks time it; empty: that of the point
+    std::vector<OwnDecoder> decoders = {};  ///< methods that are not those of Stipple
 
     /// Gives an axis other values; one that systems set, the first of them in each that does.
     /// \throws InputError if there is none of this name, or no system of a name.
     void replace(const SpaceAxis& axis);
+    /// Decodes by these methods: they become the values of the axis "method". If systems set it,
+    /// each system of one sensor with the method `best` has a copy for each of them, without keys
+    /// of `decoder`; the copy of "coded best" by "own" is "coded own".
+    void set_methods(const std::vector<std::string>& methods);
     [[nodiscard]] std::uint64_t size() const;
     /// Point `number` of size(); the last axis changes fastest.
     [[nodiscard]] SpacePoint point(std::uint64_t number) const;
@@ -68,6 +74,8 @@ struct Space {
     [[nodiscard]] const std::string& value(const SpacePoint& point, std::string_view name) const {
         return point[axis(name)];
     }
+    /// The decoder of a point; null: a method of Stipple.
+    [[nodiscard]] const OwnDecoder* own_decoder(const SpacePoint& point) const;
     /// The rig of a point; empty: it has one sensor.
     [[nodiscard]] std::string rig(const SpacePoint& point) const;
     /// The keys of `section` that a point sets, as "KEY=VALUE".

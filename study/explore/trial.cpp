@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <chrono>
 #include <cmath>
 #include <cstddef>
 #include <deque>
@@ -15,6 +16,7 @@
 
 #include "core/config.h"
 #include "core/error.h"
+#include "core/peak_memory.h"
 #include "core/version.h"
 #include "decoder/reconstruct.h"
 #include "io/footage_reader.h"
@@ -178,6 +180,15 @@ void record(const Trial& trial, const FluxVideo& light, const TrialStreams& stre
     figures.sample_range_stops = sample_range_stops(trial.setups);
 }
 
+/// Hands each frame to `take` in the size of the clip.
+FrameSink enlarging(const Trial& trial, const FrameSink& take) {
+    if (trial.view.binning == 1) return take;
+    return [&trial, take](std::int64_t slot, std::span<const float> frame) {
+        const FrameShape shape = trial.setups.front().footage;
+        return take(slot, enlarged_frame(frame, shape, trial.view.binning));
+    };
+}
+
 /// Decodes with `options` and hands each frame, in the size of the clip, to `take`, until that
 /// returns false.
 DecodeReport decode_streams(const Trial& trial, const TrialStreams& files,
@@ -189,14 +200,37 @@ DecodeReport decode_streams(const Trial& trial, const TrialStreams& files,
         readers.emplace_back(files.files()[readers.size()]);
         streams.push_back({readers.back(), {sensor.from_reference, sensor.phase_slots}});
     }
-    return decode_rig(
-        streams, options,
-        [&](std::int64_t slot, std::span<const float> frame) {
-            if (trial.view.binning == 1) return take(slot, frame);
-            const FrameShape shape = trial.setups.front().footage;
-            return take(slot, enlarged_frame(frame, shape, trial.view.binning));
-        },
-        progress);
+    return decode_rig(streams, options, enlarging(trial, take), progress);
+}
+
+/// Seconds that the decoder takes; its frames go to `take` as above.
+double decode_by_own(const Trial& trial, const fs::path& stream, const FrameSink& take) {
+    const auto begin = std::chrono::steady_clock::now();
+    const FluxVideo video = trial.own->decode(stream, trial.own_options);
+    const std::chrono::duration<double> taken = std::chrono::steady_clock::now() - begin;
+    check_video(*trial.own, video, trial.slots, trial.setups.front().footage);
+    const FrameSink sink = enlarging(trial, take);
+    for (int slot = 0; slot < video.slots(); ++slot) sink(slot, video.frame(slot));
+    return taken.count();
+}
+
+/// Decodes by the method of the trial, as decode_streams, and measures what it takes.
+void decode_measured(const Trial& trial, const TrialStreams& streams, const FrameSink& take,
+                     const ProgressCallback& progress, TrialFigures& figures) {
+    const PeakMemory memory;
+    figures.decode_seconds =
+        trial.own ? decode_by_own(trial, streams.files().front(), take)
+                  : decode_streams(trial, streams, trial.decoding, take, progress).seconds;
+    if (const auto bytes = memory.bytes())
+        figures.decode_megabytes = 1e-6 * static_cast<double>(*bytes);
+}
+
+/// The options of an own decoder, lines of TOML. \throws InputError for a rig.
+std::string own_options_of(const Space& space, const SpacePoint& point, const OwnDecoder& decoder) {
+    if (!space.rig(point).empty())
+        throw InputError(fmt::format("decoder \"{}\"", decoder.name),
+                         "decodes one stream, but the point has a rig");
+    return Config(space.settings(point, "decoder"), "decoder").as_toml("");
 }
 
 /// The method and its options; `keys` gets what identifies them: the given keys as lines of TOML, a
@@ -256,14 +290,22 @@ Trial set_up_trial(const Space& space, const SpacePoint& point, const TrialLight
                    ComparedSlots compared) {
     PointRig of_point = rig_of(space, point);
     const std::string& method = space.value(point, "method");
-    std::string decoder_keys;
-    DecodeOptions decoding = decoding_of(method, space.settings(point, "decoder"), decoder_keys);
+    const OwnDecoder* const own = space.own_decoder(point);
+    const std::string own_options = own == nullptr ? "" : own_options_of(space, point, *own);
+    std::string decoder_keys = own_options;
+    DecodeOptions decoding;
+    if (own == nullptr)
+        decoding = decoding_of(method, space.settings(point, "decoder"), decoder_keys);
+    else
+        decoder_keys += fmt::format("# own decoder, version {}\n", own->version);
     const FrameShape shape = light.video.shape();
     Trial trial{.rig = std::move(of_point.rig),
                 .setups = {},
                 .windows = {},
                 .view = view_of(space, point),
                 .decoding = std::move(decoding),
+                .own = own == nullptr ? std::nullopt : std::optional<OwnDecoder>(*own),
+                .own_options = own_options,
                 .slots = std::min(slots, light.video.slots()),
                 .compared = compared,
                 .identity = {}};
@@ -306,7 +348,7 @@ TrialOutcome run_trial(const Trial& trial, const TrialLight& light, const fs::pa
                             static_cast<double>(light.video.shape().pixels());
     figures.compared_slots = fmt::format("{}:{}", trial.compared.begin, trial.compared.end);
     const int shown = trial.slots / 2;
-    const bool is_naive = trial.decoding.method == DecodeMethod::kNaive;
+    const bool is_naive = !trial.own && trial.decoding.method == DecodeMethod::kNaive;
     QualityMeter meter(truth.shape(), {.max_value = kBrightestLight});
     const auto take = [&](std::int64_t slot, std::span<const float> frame) {
         const auto reference = truth.frame(static_cast<int>(slot));
@@ -319,11 +361,11 @@ TrialOutcome run_trial(const Trial& trial, const TrialLight& light, const fs::pa
         }
         return true;
     };
-    figures.decode_seconds =
-        decode_streams(trial, streams, trial.decoding, take, [&](double slots) {
-            progress(slots / trial.slots);
-            return keep_going();
-        }).seconds;
+    const auto tell = [&](double slots) {
+        progress(slots / trial.slots);
+        return keep_going();
+    };
+    decode_measured(trial, streams, take, tell, figures);
     check(keep_going);
     const auto take_naive = [&](std::int64_t slot, std::span<const float> frame) {
         if (slot == shown) picture.put(TrialPicture::kNaive, frame);

@@ -19,6 +19,7 @@
 #include "readout/footage_origin.h"
 #include "readout/rig.h"
 #include "readout/sensor_file.h"
+#include "study/decoders/own_decoder.h"
 #include "study/explore/point_view.h"
 #include "study/explore/space.h"
 #include "study/metrics/video_quality.h"
@@ -43,6 +44,7 @@ struct TrialFigures {
     double pu21_psnr_db = kNone;
     double sample_range_stops = kNone;
     double decode_seconds = kNone;
+    double decode_megabytes = kNone;  ///< the most memory that decoding added
     std::string compared_slots = {};  ///< "A:B", those before B
 };
 
@@ -65,7 +67,7 @@ struct FigureColumn {
     Better better;
 };
 
-inline constexpr std::array<FigureColumn, 13> kFigureColumns{
+inline constexpr std::array<FigureColumn, 14> kFigureColumns{
     {{"slots_per_second", "slot rate, 1/s", &TrialFigures::slots_per_second, Better::kMore},
      {"readout_slots_per_second", "slot rate of the readout, 1/s",
       &TrialFigures::readout_slots_per_second, Better::kMore},
@@ -83,7 +85,8 @@ inline constexpr std::array<FigureColumn, 13> kFigureColumns{
      {"pu21_psnr_db", "PU21-PSNR, dB", &TrialFigures::pu21_psnr_db, Better::kMore},
      {"sample_range_stops", "sample range, stops", &TrialFigures::sample_range_stops,
       Better::kMore},
-     {"decode_seconds", "decode time, s", &TrialFigures::decode_seconds, Better::kLess}}};
+     {"decode_seconds", "decode time, s", &TrialFigures::decode_seconds, Better::kLess},
+     {"decode_megabytes", "decode memory, MB", &TrialFigures::decode_megabytes, Better::kLess}}};
 
 /// Light is compared up to this one: full_scale_e / photons_per_unit of the default sensor.
 inline constexpr double kBrightestLight = 2;
@@ -129,9 +132,11 @@ struct Trial {
     std::vector<TimedWindow> windows;  ///< whose rate, bandwidth and energy are computed
     PointView view;                    ///< what the sensors read
     DecodeOptions decoding;
-    int slots;               ///< the first ones of the light are recorded
-    ComparedSlots compared;  ///< of these
-    std::string identity;    ///< all that determines the result; equal for equal trials
+    std::optional<OwnDecoder> own;  ///< decodes in place of `decoding`
+    std::string own_options;        ///< of it
+    int slots;                      ///< the first ones of the light are recorded
+    ComparedSlots compared;         ///< of these
+    std::string identity;           ///< all that determines the result; equal for equal trials
 };
 
 /// Precondition: slots > 0, more than the light has are not recorded; `compared` is of these.
@@ -146,7 +151,7 @@ struct TrialOutcome {
 
 /// Records the light as `stream`, those of further sensors beside it, decodes them to one video,
 /// and removes them. `progress` receives the part of the slots that is decoded, 0..1. \throws
-/// InputError, DeviceError, TrialStopped.
+/// InputError, DeviceError, TrialStopped; DecoderFault and what else an OwnDecoder throws.
 [[nodiscard]] TrialOutcome run_trial(
     const Trial& trial, const TrialLight& light, const std::filesystem::path& stream,
     const KeepGoing& keep_going, const std::function<void(double)>& progress = [](double) {});

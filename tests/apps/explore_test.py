@@ -285,7 +285,7 @@ method = "fast"
 
         def table(folder):
             with open(self.folder / folder / "table.csv", newline="") as file:
-                return [{**row, "decode_seconds": None} for row in csv.DictReader(file)]
+                return [{**row, "decode_seconds": None, "decode_megabytes": None} for row in csv.DictReader(file)]
 
         self.assertEqual(table("results"), table("whole"))
 

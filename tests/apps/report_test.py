@@ -103,7 +103,7 @@ class ReportTest(ProgramTest):
                      '{"measured": {}, "photon_transfer": [[1, 2, 3]], "saturation_point": 1}',
                      '{"measured": {}, "photon_transfer": [[1, 2, "3"]], "saturation_point": 0}'):
             (self.folder / "other.json").write_text(text)
-            self.fails(INPUT, ["other.json", "characterize --json"], "report", "clip.stipple", "-o", "b.html",
+            self.fails(INPUT, ["other.json", "stipple characterize"], "report", "clip.stipple", "-o", "b.html",
                        "--characterization", "other.json")
 
     def test_a_truth_that_ends_early_is_told(self):

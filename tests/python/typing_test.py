@@ -35,6 +35,12 @@ addresses = [camera.address for camera in stipple.capture.list()]
 units = {feature.name: feature.unit for feature in stipple.capture.features("gige:127.0.0.1", "exposure")}
 with stipple.capture.frames("replay:a.npy") as frames:
     dn = [frame.dn.mean() for frame in frames]
+def own(stream: stipple.Stream, sigma: float = 0.1) -> "np.ndarray[tuple[int, ...], np.dtype[np.float32]]":
+    return stipple.decode(stream, "naive")
+table = stipple.rivals("pan", Path("results"), methods=["naive", own, stipple.Decoder(own, "other", "1")], seeds=2)
+table = stipple.explore("space.toml", "results", methods=[own], crop="16x16", resize=(8, 8))
+page: int = stipple.report([stream, "clip.stipple"], "a.html", truth=video, methods=["best", own])["bytes"]
+rig = stipple.emulate_rig(stipple.synth("pan", frames=4), "tocci2011_slow", "rig", {"high.share": 0.5})
 '''
 
 

@@ -37,7 +37,7 @@ def shown(row, name):
 def table_of(rows):
     """Markdown of the columns that differ between rows, with PSNR in any case."""
     names = [name for name in rows[0] if not name.endswith(("_low", "_high")) and name not in (
-        "decode_seconds", "samples_per_voxel", "psnr_gamma_db", "rung", "slots", "problem", "field_of_view",
+        "decode_seconds", "decode_megabytes", "samples_per_voxel", "psnr_gamma_db", "rung", "slots", "problem", "field_of_view",
         "code_megabits_per_second")]
     columns = [name for name in names if name == "psnr_db" or len({row[name] for row in rows}) > 1]
     head = [FIGURES.get(name, (f"`{name}`", ""))[0] for name in columns]

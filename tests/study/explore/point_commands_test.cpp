@@ -40,6 +40,16 @@ Space space() {
     return parse_space(text, "space.toml");
 }
 
+TEST(PointCommandsTest, APointOfAnOwnDecoderIsForPython) {
+    Space all = space();
+    all.decoders = {{"own'decoder", {}}};
+    all.set_methods({"own'decoder"});
+    const std::string text = point_commands(all, all.point(0), {12, {3, 9}, true});
+    EXPECT_THAT(text, HasSubstr("\nEND\n# Then stipple.explore in Python, with the decoder "
+                                "\"own'decoder\""));
+    EXPECT_THAT(text, Not(HasSubstr("\nstipple ")));
+}
+
 TEST(PointCommandsTest, ThePointIsASpaceOfItsOwn) {
     const Space all = space();
     for (std::uint64_t number = 0; number < all.size(); ++number) {

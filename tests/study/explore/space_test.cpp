@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <cstdint>
 #include <filesystem>
 #include <fstream>
 #include <iterator>
@@ -53,6 +54,38 @@ TEST(SpaceTest, AKeyThatSystemsSetIsReplacedInThem) {
     EXPECT_TRUE(space.settings(space.point(0), "decoder").empty());
     EXPECT_EQ(space.settings(space.point(1), "decoder"),
               std::vector<std::string>{"dictionary=y.npy"});
+}
+
+TEST(SpaceTest, MethodsReplaceThoseOfTheAxis) {
+    Space space =
+        parse_space("[axes]\nsensor = 'paper'\nmethod = ['fast', 'best']\n", "space.toml");
+    space.set_methods({"naive", "own", "best"});
+    ASSERT_EQ(space.size(), 3);
+    EXPECT_EQ(space.value(space.point(1), "method"), "own");
+}
+
+TEST(SpaceTest, EachSystemOfOneSensorAndTheMethodBestHasACopyForEachMethod) {
+    Space space = parse_space(
+        "[axes]\nsensor = 'paper'\n"
+        "[[systems]]\nname = 'coded best'\nschedule = 'random'\nmethod = 'best'\n"
+        "set = { 'decoder.iterations' = 3, 'sensor.bit_depth' = 10 }\n"
+        "[[systems]]\nname = 'coded fast'\nschedule = 'random'\nmethod = 'fast'\n"
+        "[[systems]]\nname = 'bestial best (x)'\nschedule = 'full1x'\nmethod = 'best'\n"
+        "[[systems]]\nname = 'frames'\nschedule = 'full4x'\nmethod = 'best'\n"
+        "[[systems]]\nname = 'rig best'\nrig = 'flutter'\nmethod = 'best'\n",
+        "space.toml");
+    space.set_methods({"best", "own"});
+    std::vector<std::string> names;
+    for (std::uint64_t number = 0; number < space.size(); ++number)
+        names.push_back(space.value(space.point(number), "system"));
+    EXPECT_EQ(names, (std::vector<std::string>{"coded best", "coded fast", "bestial best (x)",
+                                               "frames", "rig best", "coded own", "bestial own (x)",
+                                               "frames best", "frames own"}));
+    const SpacePoint own = space.point(5);
+    EXPECT_EQ(space.value(own, "schedule") + " " + space.value(own, "method"), "random own");
+    EXPECT_EQ(space.settings(own, "sensor"), std::vector<std::string>{"bit_depth=10"});
+    EXPECT_TRUE(space.settings(own, "decoder").empty());
+    EXPECT_EQ(space.settings(space.point(0), "decoder"), std::vector<std::string>{"iterations=3"});
 }
 
 TEST(SpaceTest, TheExamplesCanBeRead) {

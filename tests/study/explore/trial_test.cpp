@@ -7,9 +7,14 @@
 #include <cstddef>
 #include <cstdint>
 #include <filesystem>
+#include <span>
+#include <stdexcept>
 #include <string>
 
 #include "core/error.h"
+#include "decoder/measurements.h"
+#include "decoder/reconstruct.h"
+#include "stream/stream_reader.h"
 #include "tests/study/explore/dictionary_bytes.h"
 #include "tests/support/source_tree.h"
 #include "tests/support/temporary_folder.h"
@@ -22,6 +27,10 @@ const std::string kClip = "[clip]\nframes = 16\nrows = 16\ncols = 24\n";
 bool keep_going() {
     return true;
 }
+
+const std::string kTwo =
+    "sensors = ['a', 'b']\na = { share = 0.8, schedule = 'full4x' }\n"
+    "b = { share = 0.2, schedule = 'full1x', phase_slots = 4 }\n";
 
 class TrialTest : public testing::Test {
   protected:
@@ -44,7 +53,6 @@ class TrialTest : public testing::Test {
 
     const TemporaryFolder folder_;
 
-  private:
     [[nodiscard]] static Space space_of(const std::string& axes, const std::string& set) {
         return parse_space("[axes]\nsensor = 'paper'\n" + axes + "[set]\n" + set + kClip,
                            "space.toml");
@@ -52,7 +60,73 @@ class TrialTest : public testing::Test {
     [[nodiscard]] static TrialLight light(const Space& space) {
         return read_light(space, "pan", {}, keep_going);
     }
+    /// The first point with this decoder.
+    [[nodiscard]] static Trial trial_of(const OwnDecoder& decoder, const std::string& axes = "",
+                                        const std::string& set = "") {
+        Space space = space_of(axes, set);
+        space.decoders = {decoder};
+        space.set_methods({decoder.name});
+        return set_up_trial(space, space.point(0), light(space), space.frames, {4, 12});
+    }
+    [[nodiscard]] TrialFigures figures_of(const OwnDecoder& decoder,
+                                          const std::string& axes = "") const {
+        return run_trial(trial_of(decoder, axes), light(space_of(axes, "")), folder_ / "a.stipple",
+                         keep_going)
+            .figures;
+    }
 };
+
+/// A method of Stipple as an own decoder.
+OwnDecoder decoder_by(DecodeMethod method) {
+    return {"own", [method](const std::filesystem::path& stream, const std::string&) {
+                StreamReader reader(stream);
+                FluxVideo video(static_cast<int>(reader.slots().value()),
+                                decoded_shape(reader.header()));
+                decode(reader, method, [&](std::int64_t slot, std::span<const float> frame) {
+                    std::ranges::copy(frame, video.frame(static_cast<int>(slot)).begin());
+                    return true;
+                });
+                return video;
+            }};
+}
+
+TEST_F(TrialTest, AnOwnDecoderHasTheFiguresOfTheMethodThatItCalls) {
+    for (const char* view : {"", "binning = 2\n", "window_rows = 0.5\n"}) {
+        const TrialFigures own = figures_of(decoder_by(DecodeMethod::kFast), view);
+        const TrialFigures fast = figures_of(std::string("method = 'fast'\n") + view);
+        for (const FigureColumn& column : kFigureColumns) {
+            if (column.name.starts_with("decode_") || std::isnan(fast.*column.value)) continue;
+            EXPECT_EQ(own.*column.value, fast.*column.value) << view << column.name;
+        }
+        EXPECT_GT(own.decode_seconds, 0);
+        EXPECT_EQ(std::isnan(own.decode_megabytes), std::isnan(fast.decode_megabytes));
+    }
+}
+
+TEST_F(TrialTest, AnOwnDecoderGetsTheOptionsOfThePointAndIsIdentifiedByThemAndItsVersion) {
+    const auto identity = [&](const std::string& version, const std::string& set) {
+        OwnDecoder own = decoder_by(DecodeMethod::kNaive);
+        own.version = version;
+        return trial_of(own, "", set).identity;
+    };
+    const std::string first = identity("1", "'decoder.sigma' = 0.5\n");
+    EXPECT_EQ(identity("1", "'decoder.sigma' = 0.5\n"), first);
+    EXPECT_NE(identity("2", "'decoder.sigma' = 0.5\n"), first);
+    EXPECT_NE(identity("1", "'decoder.sigma' = 0.25\n"), first);
+    EXPECT_EQ(trial_of(decoder_by(DecodeMethod::kNaive), "", "'decoder.sigma' = 0.5\n").own_options,
+              "sigma = 0.5\n");
+}
+
+TEST_F(TrialTest, WhatAnOwnDecoderThrowsLeavesNoStream) {
+    const OwnDecoder empty{"own", [](const auto&, const auto&) { return FluxVideo(); }};
+    EXPECT_THROW(static_cast<void>(figures_of(empty)), DecoderFault);
+    const OwnDecoder failing{
+        "own", [](const auto&, const auto&) -> FluxVideo { throw std::domain_error("a reason"); }};
+    EXPECT_THROW(static_cast<void>(figures_of(failing)), std::domain_error);
+    EXPECT_TRUE(folder_.names().empty());
+    EXPECT_THROW(static_cast<void>(trial_of(failing, "rig = " + written("two.toml", kTwo))),
+                 InputError);
+}
 
 TEST_F(TrialTest, ADictionaryIsIdentifiedByItsBytes) {
     const auto identity = [&](const std::string& file) {
@@ -63,10 +137,6 @@ TEST_F(TrialTest, ADictionaryIsIdentifiedByItsBytes) {
     EXPECT_NE(identity(written("a.npy", dictionary_bytes(5))), first);
     EXPECT_EQ(identity(written("a.npy", dictionary_bytes(4))), first);
 }
-
-const std::string kTwo =
-    "sensors = ['a', 'b']\na = { share = 0.8, schedule = 'full4x' }\n"
-    "b = { share = 0.2, schedule = 'full1x', phase_slots = 4 }\n";
 
 TEST_F(TrialTest, ARigIsIdentifiedByItsContent) {
     const auto identity = [&](const std::string& name, const std::string& text) {

@@ -1,4 +1,4 @@
-#include "apps/output/camera_report.h"
+#include "study/report/camera_file.h"
 
 #include <algorithm>
 #include <nlohmann/json.hpp>
@@ -38,16 +38,16 @@ bool is_camera(const ordered_json& json) {
 
 }  // namespace
 
-ordered_json read_camera_file(const std::string& file) {
+std::string read_camera_file(const std::string& file) {
     const auto bytes = read_file(file);
     const auto* text = reinterpret_cast<const char*>(bytes.data());
     const ordered_json json = ordered_json::parse(text, text + bytes.size(), nullptr, false);
     if (!is_camera(json))
-        throw InputError(file, "is not a result of \"stipple characterize --json FILE\"");
+        throw InputError(file, "is not a result that \"stipple characterize\" wrote as JSON");
     ordered_json camera;
     for (const char* key : {"measured", "configured", "photon_transfer", "saturation_point"})
         if (json.contains(key)) camera[key] = json[key];
-    return camera;
+    return camera.dump();
 }
 
 }  // namespace stipple
