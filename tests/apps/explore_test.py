@@ -145,6 +145,17 @@ class ExploreTest(ProgramTest):
             text = re.escape(problem.removeprefix("'"))
             self.assertRegex(told, rf'\n{count} points failed, first ".*": {text}\n')
 
+    def test_the_table_for_people_has_the_figures_of_the_rows(self):
+        self.write_space()
+        told = self.succeed("explore", "space.toml", "-o", "results").splitlines()
+        head = next(number for number, line in enumerate(told) if line.endswith("decode s        MB"))
+        for row, line in zip(self.rows(), told[head + 1:]):
+            figures = line.removeprefix(f"{row['sensor']}, {row['schedule']}").split()
+            self.assertEqual(figures[4], f"{float(row['psnr_db']):.2f}")
+            self.assertEqual(figures[-2], f"{float(row['decode_seconds']):.1f}")
+            memory = row["decode_megabytes"]
+            self.assertEqual(figures[-1], f"{float(memory):.0f}" if memory else "-")
+
     def test_many_reasons_are_told_in_part(self):
         names = ", ".join(f'"none{i}"' for i in range(11))
         told = self.succeed("explore", self.write_space(SPACE.replace('"lux1310"', names)), "-o", "results")
