@@ -83,23 +83,22 @@ class Decoder(torch.nn.Module):
 
 
 class Codes(torch.nn.Module):
-    """A choice of a legal code for each pixel of the tile: hard ones forward, their probabilities backward."""
+    """Soft weights, of which the chip has the nearest legal codes; the gradient passes straight through (as in
+    BinaryConnect: Courbariaux, Bengio, David, NIPS 2015)."""
 
     def __init__(self, begin):
         super().__init__()
         self.codes = st.legal_codes(PERIOD, LENGTHS, EXPOSURES)
-        chosen = st.nearest_codes(begin, self.codes, PERIOD)
-        self.logits = torch.nn.Parameter(10.0 * self.one_hot(chosen))
+        self.soft = torch.nn.Parameter(self.hard(st.nearest_codes(begin, self.codes, PERIOD)))
 
-    def one_hot(self, chosen):
-        return torch.nn.functional.one_hot(chosen, len(self.codes)).permute(2, 0, 1).float()
+    def hard(self, chosen):
+        return self.codes[chosen].permute(2, 3, 0, 1)
+
+    def chosen(self):
+        return torch.einsum("esrc,nes->nrc", self.soft.detach(), self.codes).argmax(0)
 
     def forward(self):
-        choice = torch.nn.functional.gumbel_softmax(self.logits, hard=True, dim=0)
-        return torch.einsum("nrc,nes->esrc", choice, self.codes)
-
-    def best(self):
-        return torch.einsum("nrc,nes->esrc", self.one_hot(self.logits.argmax(0)), self.codes)
+        return self.hard(self.chosen()) + (self.soft - self.soft.detach())
 
 
 def lattice():
@@ -128,10 +127,10 @@ def train(steps, batch=2):
     losses = []
     for step in range(steps):
         if step == steps // 3:  # until then the decoder learns alone
-            learn.param_groups[1]["lr"] = 0.05
+            learn.param_groups[1]["lr"] = 0.02
         items = [data[order[(batch * step + i) % len(order)]] for i in range(batch)]
         truth = torch.from_numpy(np.stack([item.truth for item in items]))
-        weights = st.delayed(codes() if step >= steps // 3 else codes.best(), PERIOD, delays, (CROP // TILE,) * 2)
+        weights = st.delayed(codes(), PERIOD, delays, (CROP // TILE,) * 2)
         video = decoder(chip, chip(truth, weights), weights)
         error = (video + 1e-3).sqrt() - (truth + 1e-3).sqrt()
         loss = error[:, MIDDLE].square().mean()
@@ -142,9 +141,9 @@ def train(steps, batch=2):
         if (step + 1) % max(steps // 10, 1) == 0:
             recent = np.mean(losses[-(steps // 10 + 1):])
             print(f"step {step + 1} of {steps}: {-10 * np.log10(recent):.2f} dB", flush=True)
-    changed = int((codes.logits.argmax(0) != st.nearest_codes(begin, codes.codes, PERIOD)).sum())
-    print(f"{changed} of {TILE * TILE} codes have changed")
-    return codes.best(), delays
+    changed = int((codes.chosen() != st.nearest_codes(begin, codes.codes, PERIOD)).sum())
+    print(f"{changed} of {TILE * TILE} codes have changed", flush=True)
+    return codes().detach(), delays
 
 
 def mean_of(rows, system, clip, figure):

@@ -92,6 +92,10 @@ class DatasetTest(unittest.TestCase):
         np.testing.assert_array_equal(found.min(0), (0, 0, 0))
         np.testing.assert_array_equal(found.max(0), (24 - 18, 16 - 8, 20 - 12))
 
+    def test_each_clip_has_its_own_crops(self):
+        data = dataset([clip(), clip()], seeds=20)
+        self.assertTrue(any(not np.array_equal(data[2 * i].truth, data[2 * i + 1].truth) for i in range(20)))
+
     def test_light_and_contrast(self):
         factors, powers = [], []
         data = dataset(clip(), light=(0.25, 4), contrast=(0.5, 2), seeds=200)
