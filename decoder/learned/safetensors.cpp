@@ -147,7 +147,7 @@ TensorFile parse_safetensors(std::span<const std::uint8_t> bytes, std::string_vi
     std::map<std::string, Entry> entries;
     try {
         const auto json = nlohmann::json::parse(header);
-        for (const auto& [name, value] : json.items())
+        for (const auto& [name, value] : json.get_ref<const nlohmann::json::object_t&>())
             if (name == kMetadata)
                 file.metadata = value.get<std::map<std::string, std::string>>();
             else
