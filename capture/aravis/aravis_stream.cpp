@@ -27,20 +27,20 @@ BufferMemory& memory_of(ArvBuffer* buffer) {
 }
 
 /// Aravis stamps the first packet of a frame with the host's realtime; where that packet was lost,
-/// the frame arrived before now. A thread that waits for its core between two clocks reads them again.
-/// No frame arrives before the last one, or later than now, whatever the realtime clock does.
+/// the frame arrived before now. A thread that waits for its core between two clocks reads them
+/// again. No frame arrives before the last one, or later than now, whatever the realtime clock
+/// does.
 void stamp_arrival(ArvBuffer* buffer, FrameRecord& record, std::int64_t last_monotonic_ns) {
     std::int64_t now_ns = 0, realtime_now_ns = 0;
     for (int tries = 0; tries < 5; ++tries) {
         now_ns = monotonic_ns();
         realtime_now_ns = realtime_ns();
-        if (monotonic_ns() - now_ns < 1000)
-            break;
+        if (monotonic_ns() - now_ns < 1000) break;
     }
     const auto first_ns = static_cast<std::int64_t>(arv_buffer_get_system_timestamp(buffer));
     record.host_realtime_ns = first_ns != 0 ? first_ns : realtime_now_ns;
-    record.host_monotonic_ns = std::clamp(now_ns - (realtime_now_ns - record.host_realtime_ns),
-                                          last_monotonic_ns, now_ns);
+    record.host_monotonic_ns =
+        std::clamp(now_ns - (realtime_now_ns - record.host_realtime_ns), last_monotonic_ns, now_ns);
 }
 
 /// A frame whose leader was lost keeps what its buffer said before: this.
