@@ -105,7 +105,7 @@ constexpr NamedDecodeMethod kMethods[] = {
      }},
     {"plug_and_play", DecodeMethod::kPlugAndPlay, true, false,
      "the iterations of best with a denoiser of your own, a network or in Python", kMaxCoreSites,
-     76, 11,
+     90, 11,
      [](Config& config, DecodeOptions& options) {
          read_options(config, options.best);
          read_options(config, options.plug_and_play);
