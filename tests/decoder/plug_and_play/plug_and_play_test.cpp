@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <stdexcept>
@@ -19,7 +20,7 @@ namespace stipple {
 namespace {
 
 constexpr FrameShape kShape{.rows = 24, .cols = 28, .planes = 1};
-constexpr CollaborativeOptions kShort{.iterations = 4, .light_offset = 0.5F};
+const CollaborativeOptions kShort{.iterations = 4, .light_offset = 0.5F};
 
 /// A bar that moves a pixel a slot.
 FluxVideo moving() {
@@ -40,12 +41,12 @@ FluxVideo decoded(const Denoiser& denoiser) {
     const ProgressCallback progress = [](double) { return true; };
     const PlugAndPlayOptions own{
         .denoiser = [&](const CollaborativeOptions&, bool) { return denoiser; }};
-    return *decode_plug_and_play({m, SampleNoise(calibration_of({})), progress}, kShort, own);
+    return *decode_plug_and_play({m, SampleNoise(Calibration{}), progress}, kShort, own);
 }
 
 TEST(PlugAndPlayTest, WithTheFilterOfBestItHasItsBits) {
     Measurements m = samples();
-    const auto best = decode_collaborative(m, SampleNoise(calibration_of({})), kShort);
+    const auto best = decode_collaborative(m, SampleNoise(Calibration{}), kShort);
     EXPECT_TRUE(std::ranges::equal(decoded(PatchDenoiser(kShort, false)).data(), best->data()));
 }
 
@@ -81,7 +82,7 @@ TEST(PlugAndPlayTest, NeedsADenoiser) {
     const ProgressCallback progress = [](double) { return true; };
     expect_parts(
         message_of<InputError>([&] {
-            return decode_plug_and_play({m, SampleNoise(calibration_of({})), progress}, kShort, {});
+            return decode_plug_and_play({m, SampleNoise(Calibration{}), progress}, kShort, {});
         }),
         {"plug_and_play: has no denoiser", "decoder.denoiser = net.onnx"});
     PlugAndPlayOptions options;
