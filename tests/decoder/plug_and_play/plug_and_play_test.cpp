@@ -39,8 +39,8 @@ Measurements samples() {
 FluxVideo decoded(const Denoiser& denoiser) {
     Measurements m = samples();
     const ProgressCallback progress = [](double) { return true; };
-    const PlugAndPlayOptions own{
-        .denoiser = [&](const CollaborativeOptions&, bool) { return denoiser; }};
+    PlugAndPlayOptions own;
+    own.denoiser = [&](const CollaborativeOptions&, bool) { return denoiser; };
     return *decode_plug_and_play({m, SampleNoise(Calibration{}), progress}, kShort, own);
 }
 
