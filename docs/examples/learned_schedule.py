@@ -118,8 +118,8 @@ def lattice():
 def train(steps, batch=2):
     """The learned weights and their delays."""
     torch.manual_seed(1)
-    data = stipple.dataset([scene(seed) for seed in range(min(24, batch * steps))], SENSOR, "full1x", crop=(CROP, CROP), slots=SLOTS,
-                           light=(0.3, 2))
+    scenes = [scene(seed) for seed in range(min(24, batch * steps))]
+    data = stipple.dataset(scenes, SENSOR, "full1x", crop=(CROP, CROP), slots=SLOTS, light=(0.3, 2))
     begin, delays = lattice()
     chip, codes, decoder = st.CodedSensor(SENSOR, PERIOD), Codes(begin), Decoder()
     learn = torch.optim.Adam([{"params": decoder.parameters(), "lr": 3e-3}, {"params": codes.parameters(), "lr": 0}])
