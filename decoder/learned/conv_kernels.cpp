@@ -11,8 +11,10 @@
 #include <hwy/highway.h>
 
 #include <algorithm>
+#include <array>
 #include <cassert>
 #include <cstddef>
+#include <span>
 
 #include "core/parallel.h"
 
@@ -21,6 +23,7 @@
 namespace stipple {
 
 constexpr int kMaxTilePixels = 8;
+constexpr int kMaxSide = 3;
 
 /// out(out_step (row, col) + (out_row, out_col)) is of in(in_step (row, col) + 0..side - 1 -
 /// padding).
@@ -82,27 +85,20 @@ HWY_INLINE void add_products(const float* in, const ChannelBlock* weight, std::s
     }
 }
 
-/// The sums at (row, col) and the pixels right of it. The loops over weights are not unrolled:
-/// compilers would then load far ahead, and the sums would not stay in registers.
+/// The sums at the pixel of the output whose first pixel of the input is `block`, and right of it.
+/// `at` tells where the pixels below the weights are: compilers that can tell themselves load
+/// values for several steps, for which some sums would leave the registers.
 template <int kVectors, int kPixels, int kStep>
-HWY_INLINE void add_all(const ConvolutionPass& pass, const ChannelBlock* weight, int row, int col,
+HWY_INLINE void add_all(const ConvolutionPass& pass, const ChannelBlock* block,
+                        const ChannelBlock* weight, std::span<const std::size_t> at,
                         Tile<kVectors, kPixels>& tile) {
-    const ConvolutionWeights& weights = *pass.weights;
-    const int side = weights.side;
-    const std::size_t stride = index(weights.inputs) * index(side * side);
-    const std::size_t row_values = pass.in->row_stride() * kBlockChannels;
-    const ChannelBlock* block =
-        pass.in->pixel(0, row * kStep - pass.padding, col * kStep - pass.padding);
-    for (int left = weights.inputs; left > 0; left -= kBlockChannels) {
-        for (int channel = 0; channel < std::min(left, kBlockChannels); ++channel) {
-            const float* in_row = block->value.data() + channel;
-            for (int i = 0; i < side; ++i, in_row += row_values) {
-                const float* in = in_row;
-                for (int j = 0; j < side; ++j, in += kBlockChannels, ++weight)
-                    add_products<kVectors, kPixels, kStep>(in, weight, stride, tile);
-            }
-        }
-        block += pass.in->block_stride();
+    const int inputs = pass.weights->inputs;
+    const std::size_t stride = index(inputs) * at.size();
+    for (int input = 0; input < inputs; ++input) {
+        const float* in = &block->value[index(input % kBlockChannels)];
+        for (const std::size_t offset : at)
+            add_products<kVectors, kPixels, kStep>(in + offset, weight++, stride, tile);
+        if (input % kBlockChannels == kBlockChannels - 1) block += pass.in->block_stride();
     }
 }
 
@@ -135,13 +131,19 @@ template <int kBlocks, int kPixels, int kStep>
 void convolve_blocks(const ConvolutionPass& pass, int block, int begin, int end) {
     static_assert(kPixels <= kMaxTilePixels);
     const ConvolutionWeights& weights = *pass.weights;
-    const ChannelBlock* weight =
-        &weights.weight[index(block) * index(weights.inputs) * index(weights.side * weights.side)];
+    std::array<std::size_t, kMaxSide * kMaxSide> offsets;
+    const auto at = std::span(offsets).first(index(weights.side * weights.side));
+    for (int i = 0; i < weights.side * weights.side; ++i)
+        at[index(i)] = (index(i / weights.side) * pass.in->row_stride() + index(i % weights.side)) *
+                       kBlockChannels;
+    const ChannelBlock* weight = &weights.weight[index(block) * index(weights.inputs) * at.size()];
     for (int row = begin; row < end; ++row)
         for (int col = 0; col < pass.cols(); col += kPixels) {
             Tile<kBlocks * kBlockVectors, kPixels> tile;
             start(&weights.bias[index(block)], tile);
-            add_all<kBlocks * kBlockVectors, kPixels, kStep>(pass, weight, row, col, tile);
+            add_all<kBlocks * kBlockVectors, kPixels, kStep>(
+                pass, pass.in->pixel(0, row * kStep - pass.padding, col * kStep - pass.padding),
+                weight, at, tile);
             finish(pass, block, row, col, tile);
         }
 }

@@ -112,9 +112,41 @@ void network(benchmark::State& state) {
     state.counters["voxels"] = static_cast<double>(pixels) / best_wall;
 }
 
+/// A convolution of a level of the network on some rows: as short as a busy machine may leave a
+/// core to one program.
+void convolution(benchmark::State& state) {
+    const int channels = static_cast<int>(state.range(0));
+    const int rows = 16;
+    const int cols = static_cast<int>(state.range(1));
+    const ThreadLimit limit(1);
+    const Tensor weight = random_tensor({channels, channels, 3, 3}, 1);
+    const auto weights =
+        stipple::convolution(3, weight.values, random_tensor({channels}, 2).values);
+    const FeatureMap in(channels, rows, cols);
+    FeatureMap out = in;
+    double best = std::numeric_limits<double>::max();
+    double best_peak = 0;
+    for (auto step : state) {
+        const double seconds = seconds_of([&] { convolve(weights, in, {}, out); });
+        best = std::min(best, seconds);
+        state.SetIterationTime(seconds);
+        best_peak = std::max(best_peak, measured_peak());
+    }
+    const std::int64_t products = std::int64_t{9} * channels * channels * rows * cols;
+    state.SetItemsProcessed(state.iterations() * products);
+    state.counters["of_peak"] = static_cast<double>(products) / best / best_peak;
+}
+
 BENCHMARK(peak);
+BENCHMARK(convolution)
+    ->Args({40, 320})
+    ->Args({64, 160})
+    ->Args({96, 80})
+    ->ArgNames({"", ""})
+    ->UseManualTime()
+    ->Unit(benchmark::kMillisecond);
 BENCHMARK(network)
-    ->Args({64, 64, 1})
+    ->Args({64, 640, 1})
     ->Args({480, 640, 1})
     ->Args({480, 640, 2})
     ->ArgNames({"", "", ""})
