@@ -161,7 +161,7 @@ of decode: the parameter `step` of one that has it.
 
 iteration: of the block, from 0. memory: a dict that lasts as long as the block.
 sigma: as the second argument.
-light: the estimate in linear light. pilot: what the last call gave; in the first one the video.
+light: the estimate in linear light, in places below 0. pilot: what the last call gave; in the first one the video.
 Arrays are copies, with the shape of the video.)")
         .def_property_readonly("iteration",
                                [](const DenoiserStep& step) { return step.input().iteration; })

@@ -25,7 +25,7 @@ def denoise(
     sigma: float,
     step: Optional[DenoiserStep] = None,
     *,
-    passes: int = 3,
+    passes: int = 8,
     threads: int = 0,
 ) -> Array:
     """A video without its noise, by the collaborative filter of the method best: patches that are similar, along

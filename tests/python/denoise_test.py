@@ -79,7 +79,7 @@ class PlugAndPlayTest(unittest.TestCase):
 
         def look(video, sigma, step):
             self.assertEqual((video.dtype, sigma), (np.float32, step.sigma))
-            np.testing.assert_allclose(video, 2 * np.sqrt(step.light + 0.5), rtol=1e-6)
+            np.testing.assert_allclose(video, 2 * np.sqrt(np.maximum(step.light, 0) + 0.5), rtol=1e-6)
             memories.append(step.memory.setdefault("first", step.iteration))
             if step.iteration == 0:
                 np.testing.assert_array_equal(step.pilot, video)
