@@ -49,7 +49,7 @@ void decode_and_print(const RecordedClip& clip, const MethodRun& run) {
     NpyWriter video(output, output.string(), decoded_shape(reader.header()));
     const std::clock_t begin = std::clock();
     DecodeOptions options = read_decode_options(decode_method_from_name(run.method), config);
-    read_dictionary(options);
+    read_option_file(options);
     const DecodeReport report =
         decode(reader, options, [&](std::int64_t, std::span<const float> frame) {
             video.write(frame);
