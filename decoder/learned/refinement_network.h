@@ -42,9 +42,10 @@ class RefinementNetwork {
     /// `planes` has the order (input, row, col), the picture first; `out` (row, col). Rows and
     /// columns are padded at the bottom and right to multiples of 8 by repeating the edge, and the
     /// result is cropped. Padding changes the result near these edges: the network is trained on
-    /// multiples of 8. The same bits for any number of threads and SIMD target. Takes about
-    /// (inputs + w1) 4 bytes per pixel of memory. Preconditions: rows, cols >= 1, the sizes match;
-    /// values so small that no sum exceeds the range of float.
+    /// multiples of 8. The same bits for any number of threads and SIMD target. With the widths w1,
+    /// w2 and w3 it takes about 4 inputs + 2 w1 + w2 / 2 + w3 / 8 bytes of memory per pixel.
+    /// Preconditions: rows, cols >= 1, the sizes match; values so small that no sum exceeds the
+    /// range of float.
     void refine(std::span<const float> planes, int rows, int cols, std::span<float> out) const;
 
   private:
