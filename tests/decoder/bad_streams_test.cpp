@@ -77,6 +77,8 @@ class BadStreamsTest : public testing::TestWithParam<NamedDecodeMethod> {
         if (brightest == kBrightest && of_other_cameras(GetParam().method)) brightest *= 8;
         // To a bound of 2.0 come the residuals of the pixels around.
         if (brightest == kBrightest && GetParam().method == DecodeMethod::kLive) brightest = 4;
+        // The denoiser here changes nothing, so that no light is the square of a rounded root.
+        if (GetParam().method == DecodeMethod::kPlugAndPlay) brightest += 1e-9F;
         EXPECT_EQ(outcome.slots, static_cast<std::int64_t>(recorded.packets.size()));
         ASSERT_EQ(outcome.light.size(), recorded.packets.size() * recorded.header.shape.sites());
         for (const float light : outcome.light)
