@@ -11,8 +11,10 @@ ValueError, errors of files OSError, both with the program's texts."""
 from . import capture
 from ._characterize import characterize, characterize_images
 from ._chip import Chip
+from ._dictionary import dictionary
 from ._explore import explore
 from ._forward_model import ForwardModel
+from ._measurements import export, import_measurements
 from ._pipeline import Schedule, compare, decode, decode_methods, emulate, load, timing
 from ._stipple import (
     ComparedVideos,
@@ -47,8 +49,11 @@ __all__ = [
     "compare",
     "decode",
     "decode_methods",
+    "dictionary",
     "emulate",
     "explore",
+    "export",
+    "import_measurements",
     "load",
     "timing",
     "view",
