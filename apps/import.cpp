@@ -3,87 +3,40 @@
 #include <nlohmann/json.hpp>
 
 #include "apps/arguments/common_options.h"
-#include "apps/mat_volume.h"
 #include "apps/output/json_file.h"
 #include "apps/output/text_layout.h"
 #include "apps/standard_streams.h"
 #include "apps/subcommands.h"
-#include "core/error.h"
-#include "core/index.h"
 #include "io/output_names.h"
 #include "readout/measured_stream.h"
+#include "study/report/json_figures.h"
 
 namespace stipple {
 namespace {
 
 struct ImportOptions {
     MeasuredArrays arrays;
-    std::string variable = "meas";
-    std::string mask_variable = "mask";
+    MeasuredFiles files;
     std::string output;
     double electrons = 1000;
     bool noise_free = false;
     double saturation = 0;
-    int slots = 0;  ///< of a measurement; 0: as many as there are masks
 };
-
-/// The first masks only, if fewer than all belong to a measurement. \throws InputError if the file
-/// has fewer.
-void keep_masks(NpyVolume& masks, int slots, const std::string& file) {
-    if (slots == 0) return;
-    if (slots > masks.layers)
-        throw InputError(file, fmt::format("has {}, fewer than --slots {}",
-                                           counted(masks.layers, "mask"), slots));
-    masks.values.resize(masks.values.size() / index(masks.layers) * index(slots));
-    masks.layers = slots;
-}
-
-/// The arrays of the files. \throws InputError as their readers.
-MeasuredArrays read_arrays(const ImportOptions& options) {
-    MeasuredArrays arrays = options.arrays;
-    const auto read = [](const std::string& file, const std::string& variable, NpyImages images) {
-        return is_mat(file) ? read_mat_volume(file, variable) : read_npy_volume(file, images);
-    };
-    arrays.measurements = read(arrays.measurement_file, options.variable, NpyImages::kOneLayer);
-    if (arrays.mask_file.empty()) {
-        if (!is_mat(arrays.measurement_file))
-            throw InputError("--masks", "is needed; only a .mat file may hold the masks too");
-        arrays.mask_file = arrays.measurement_file;
-    }
-    arrays.masks = read(arrays.mask_file, options.mask_variable, NpyImages::kRefused);
-    keep_masks(arrays.masks, options.slots, arrays.mask_file);
-    if (!options.noise_free) arrays.electrons = options.electrons;
-    if (options.saturation > 0) arrays.saturation = options.saturation;
-    return arrays;
-}
-
-nlohmann::ordered_json json_of(const ImportedStream& stream) {
-    const ExposureSchedule& schedule = stream.header.schedule;
-    return {{"rows", stream.header.shape.rows},
-            {"cols", stream.header.shape.cols},
-            {"measurements", stream.measurements},
-            {"slots", stream.measurements * schedule.period_slots()},
-            {"weighted", schedule.weighted()},
-            {"light_throughput", schedule.light_throughput()},
-            {"light", stream.light},
-            {"unread_pixels", stream.unread_pixels},
-            {"noise_free", stream.header.calibration.noise_free}};
-}
 
 void import(const ImportOptions& options, const RunOptions& run) {
     JsonFile json(run);
-    const MeasuredArrays arrays = read_arrays(options);
+    MeasuredArrays arrays = options.arrays;
+    read_measured_files(options.files, arrays);
+    if (!options.noise_free) arrays.electrons = options.electrons;
+    if (options.saturation > 0) arrays.saturation = options.saturation;
     const ImportedStream stream = import_measurements(arrays, options.output, run.force);
     const ExposureSchedule& schedule = stream.header.schedule;
     run.say(fmt::format("{}: {} of {} x {} pixels, {} {} masks, light 1.0 is {:g}", options.output,
                         counted(stream.measurements, "measurement"), stream.header.shape.cols,
                         stream.header.shape.rows, schedule.period_slots(),
                         schedule.weighted() ? "grey" : "binary", stream.light));
-    if (stream.unread_pixels > 0)
-        say_warning("{}: the masks of {} are 0 in all slots; their measurements are left out",
-                    arrays.mask_file,
-                    counted(static_cast<std::int64_t>(stream.unread_pixels), "pixel"));
-    json.write(json_of(stream));
+    say_warning(std::string_view(unread_text(stream, arrays.mask_file)));
+    json.write(json_of([&](const auto& add) { visit_import_figures(stream, add); }));
 }
 
 void add_units(Command& command, ImportOptions& options) {
@@ -124,20 +77,21 @@ void add_import(Command& app, Action& action) {
     const auto options = std::make_shared<ImportOptions>();
     MeasuredArrays& arrays = options->arrays;
     command
-        .add_option("MEASUREMENTS", arrays.measurement_file,
-                    ".npy of (measurements, rows, columns) or (rows, columns), or .mat of (rows, "
-                    "columns, measurements)")
+        .add_option("MEASUREMENTS", options->files.measurements,
+                    ".npy or .npz of (measurements, rows, columns) or (rows, columns), or .mat of "
+                    "(rows, columns, measurements)")
         .required()
         .input();
     command
-        .add_option("--masks", arrays.mask_file,
-                    ".npy of (slots, rows, columns), or .mat of (rows, columns, slots): weights of "
-                    "the slots that a measurement adds up")
-        .default_text("MEASUREMENTS, if that is a .mat")
+        .add_option("--masks", options->files.masks,
+                    ".npy or .npz of (slots, rows, columns), or .mat of (rows, columns, slots): "
+                    "weights of the slots that a measurement adds up")
+        .default_text("MEASUREMENTS, if that is a .npz or .mat")
         .type_name("FILE")
         .input();
     command
-        .add_option("--slots", options->slots, "slots of a measurement: the first N of the masks")
+        .add_option("--slots", options->files.slots,
+                    "slots of a measurement: the first N of the masks")
         .default_text("as many as there are masks")
         .check(whole_check(1, kMaxPeriodSlots))
         .type_name("N");
@@ -156,10 +110,14 @@ void add_import(Command& app, Action& action) {
         .shows_default()
         .check(number_check(1e-6, 1e12))
         .type_name("US");
-    command.add_option("--variable", options->variable, "variable of the measurements in a .mat")
+    command
+        .add_option("--variable", options->files.variable,
+                    "name of the measurements in a .npz or .mat")
         .shows_default()
         .type_name("NAME");
-    command.add_option("--mask-variable", options->mask_variable, "variable of the masks in a .mat")
+    command
+        .add_option("--mask-variable", options->files.mask_variable,
+                    "name of the masks in a .npz or .mat")
         .shows_default()
         .type_name("NAME");
     command.footer(

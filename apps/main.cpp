@@ -103,10 +103,10 @@ CommandLine::Parsed run(int argc, char** argv) {
     Command root = line.root();
     root.footer(kExamples);
     for (const auto add :
-         {add_synth,        add_emulate,   add_chip,       add_import,   add_decode, add_join,
-          add_compare,      add_info,      add_recover,    add_schedule, add_timing, add_rtl,
-          add_characterize, add_calibrate, add_dictionary, add_capture,  add_demo,   add_explore,
-          add_rivals,       add_report,    add_view,       add_list})
+         {add_synth,   add_emulate,      add_chip,      add_import,     add_export,   add_decode,
+          add_join,    add_compare,      add_info,      add_recover,    add_schedule, add_timing,
+          add_rtl,     add_characterize, add_calibrate, add_dictionary, add_capture,  add_demo,
+          add_explore, add_rivals,       add_report,    add_view,       add_list})
         add(root, action);
     for (Command& command : root.leaves()) add_run_options(command, action.options);
     add_manual(root, action, [&line] { return line.description(); });

@@ -33,6 +33,7 @@ void add_synth(Command& app, Action& action);     ///< a scene rendered to foota
 void add_emulate(Command& app, Action& action);   ///< footage to sample stream
 void add_chip(Command& app, Action& action);      ///< a chip that is driven through registers
 void add_import(Command& app, Action& action);    ///< measurements and masks to sample stream
+void add_export(Command& app, Action& action);    ///< sample stream to measurements and masks
 void add_decode(Command& app, Action& action);    ///< sample stream to video
 void add_join(Command& app, Action& action);      ///< windows of parts to video
 void add_compare(Command& app, Action& action);   ///< quality of a video against its reference

@@ -19,6 +19,8 @@ void bind_decode(py::module_& module);
 void bind_denoiser(py::module_& module);
 void bind_forward_model(py::module_& module);
 void bind_compare(py::module_& module);
+void bind_measurements(py::module_& module);
+void bind_dictionary(py::module_& module);
 void bind_explore(py::module_& module);
 void bind_timing(py::module_& module);
 void bind_recording(py::module_& module);

@@ -37,6 +37,8 @@ PYBIND11_MODULE(_stipple, module) {
     bind_denoiser(module);
     bind_forward_model(module);
     bind_compare(module);
+    bind_measurements(module);
+    bind_dictionary(module);
     bind_explore(module);
     bind_timing(module);
     bind_recording(module);

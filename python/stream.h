@@ -8,6 +8,7 @@
 #include <optional>
 #include <string>
 
+#include "python/stream_samples.h"
 #include "stream/stream_reader.h"
 
 namespace stipple::python {
@@ -58,9 +59,11 @@ class StreamFile {
     [[nodiscard]] StreamReport read_through() const;
     /// Slots that it holds. Reads it through, once, where no index says so.
     [[nodiscard]] std::int64_t slots();
-    /// The samples of a slot: an array with the fields row, col, plane, exposure_slots, light_slots
-    /// and dn. \throws InputError for a slot that there is not.
+    /// The samples of a slot: an array of SampleRow. \throws IndexError for a slot that there is
+    /// not.
     [[nodiscard]] pybind11::array samples(std::int64_t slot);
+    /// Those of the slots [begin, end), by slot. \throws IndexError; InputError as check_memory.
+    [[nodiscard]] pybind11::array samples_between(std::int64_t begin, std::int64_t end);
     /// Copies it to a file. \throws FileError, DeviceError.
     void save(const std::filesystem::path& file, bool force) const;
 
@@ -78,6 +81,7 @@ class StreamFile {
     pybind11::object figures_;
     std::optional<StreamReader> reader_;  ///< until it is closed
     SamplePacket packet_;                 ///< that `reader_` has read last
+    SampleRows rows_;                     ///< of one slot
     bool has_packet_ = false;             ///< else `reader_` has read none, or is at the end
     std::optional<std::int64_t> slots_;
 };

@@ -2,7 +2,6 @@
 #include <fmt/format.h>
 #include <unistd.h>
 
-#include <bit>
 #include <cerrno>
 #include <cstdlib>
 #include <fstream>
@@ -10,55 +9,18 @@
 #include <utility>
 
 #include "core/error.h"
+#include "core/memory_limit.h"
 #include "io/output_file.h"
 #include "io/output_names.h"
 #include "io/pending_output.h"
 #include "python/call_progress.h"
 #include "python/errors.h"
 #include "python/stream.h"
-#include "stream/schedule_switch.h"
 
 namespace stipple::python {
 namespace fs = std::filesystem;
 namespace py = pybind11;
 namespace {
-
-/// A row of the array of samples.
-struct SampleRow {
-    std::uint16_t row, col;
-    std::uint8_t plane, exposure_slots, light_slots;
-    std::uint8_t zero;  ///< no field, but the same bytes for the same samples
-    std::uint16_t dn;
-};
-
-/// What a pixel has collected that is due after a switch; 0 slots if that is unknown.
-DuePixel across_switches(std::span<const SchedulePart> parts, const PixelSlot& at, DuePixel pixel) {
-    const auto read = read_exposure(parts, at);
-    const std::uint64_t open_slots = read ? read->open_slots : 0;
-    pixel.span_slots = static_cast<std::uint8_t>(std::bit_width(open_slots));
-    pixel.light_slots = static_cast<std::uint8_t>(std::popcount(open_slots));
-    return pixel;
-}
-
-void add_rows(const SamplePacket& packet, const StreamHeader& header,
-              std::vector<SampleRow>& rows) {
-    auto dn = packet.dn.begin();
-    if (packet.dn.empty()) return;
-    const auto parts = schedule_parts(header);
-    const SchedulePart part = schedule_at(header, packet.slot);
-    const std::int64_t slot = readout_slot(part, packet.slot);
-    for (int row = packet.first_row; row < packet.first_row + packet.rows; ++row)
-        visit_due_pixels(*part.schedule, slot, row, header.shape.cols,
-                         [&](int col, DuePixel pixel) {
-                             if (part.first_slot > 0)
-                                 pixel = across_switches(parts, {packet.slot, row, col}, pixel);
-                             for (int plane = 0; plane < header.shape.planes; ++plane)
-                                 rows.push_back({static_cast<std::uint16_t>(row),
-                                                 static_cast<std::uint16_t>(col),
-                                                 static_cast<std::uint8_t>(plane), pixel.span_slots,
-                                                 pixel.light_slots, 0, *dn++});
-                         });
-}
 
 [[noreturn]] void fail(const fs::path& path, std::string_view done) {
     throw DeviceError(path.string(), fmt::format("cannot be {}: {}", done,
@@ -170,9 +132,29 @@ py::array StreamFile::samples(std::int64_t slot) {
         check_signals();
         advance();
     }
-    std::vector<SampleRow> rows;
-    for (; has_packet_ && packet_.slot == slot; advance()) add_rows(packet_, header(), rows);
-    return py::array_t<SampleRow>(static_cast<py::ssize_t>(rows.size()), rows.data());
+    for (; has_packet_ && packet_.slot == slot; advance()) rows_.add(packet_, header());
+    return rows_.take();
+}
+
+py::array StreamFile::samples_between(std::int64_t begin, std::int64_t end) {
+    if (begin < 0 || end > slots())
+        throw py::index_error(
+            fmt::format("slots {} to {}: the stream holds {}", begin, end - 1, slots()));
+    SampleRows rows;
+    StreamReader reader = this->reader();
+    CallProgress progress(py::none(), end - begin);
+    {
+        const py::gil_scoped_release released;
+        reader.seek(begin);
+        SamplePacket packet;
+        while (reader.next(packet) && packet.slot < end) {
+            if (packet.slot >= begin) rows.add(packet, reader.header());
+            check_memory(rows.bytes(), name(), "the samples");
+            if (!progress.reach(static_cast<double>(packet.slot - begin))) break;
+        }
+    }
+    progress.finish();
+    return rows.take();
 }
 
 void StreamFile::save(const fs::path& file, bool force) const {
@@ -192,10 +174,6 @@ void StreamFile::save(const fs::path& file, bool force) const {
         output.close();
         pending.commit();
     });
-}
-
-void bind_sample_rows() {
-    PYBIND11_NUMPY_DTYPE(SampleRow, row, col, plane, exposure_slots, light_slots, dn);
 }
 
 }  // namespace stipple::python

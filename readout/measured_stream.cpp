@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "core/error.h"
+#include "core/text.h"
 #include "core/version.h"
 #include "io/pending_output.h"
 #include "readout/schedules/volume_schedule.h"
@@ -139,6 +140,13 @@ double light_of(const NpyVolume& measurements, const ExposureSchedule& schedule)
             above = above || measurements.at(m, row, col) > weights;
     });
     return above ? 255 : 1;
+}
+
+std::string unread_text(const ImportedStream& stream, const std::string& mask_file) {
+    if (stream.unread_pixels == 0) return {};
+    return fmt::format("{}: the masks of {} are 0 in all slots; their measurements are left out",
+                       mask_file,
+                       counted(static_cast<std::int64_t>(stream.unread_pixels), "pixel"));
 }
 
 ImportedStream import_measurements(const MeasuredArrays& arrays, const std::filesystem::path& file,

@@ -25,6 +25,23 @@ struct MeasuredArrays {
     double slot_us = 5000;
 };
 
+/// Where the arrays are: .npy, .npz or .mat files.
+struct MeasuredFiles {
+    std::string measurements;
+    std::string masks;                   ///< empty: that of the measurements, a .npz or .mat
+    std::string variable = "meas";       ///< in a .npz or .mat
+    std::string mask_variable = "mask";  ///< likewise
+    int slots = 0;                       ///< of a measurement: the first masks of the file; 0: all
+};
+
+/// The first masks only, if fewer than all belong to a measurement; 0: all. \throws InputError that
+/// names `file` if it has fewer.
+void keep_masks(NpyVolume& masks, int slots, const std::string& file);
+
+/// Reads `arrays.measurements` and `arrays.masks`, and names their files. \throws InputError as the
+/// readers of such files, without masks, and if there are fewer than `slots`.
+void read_measured_files(const MeasuredFiles& files, MeasuredArrays& arrays);
+
 /// What an import has made.
 struct ImportedStream {
     StreamHeader header;
@@ -32,6 +49,24 @@ struct ImportedStream {
     double light = 0;               ///< measurement of light 1.0
     std::size_t unread_pixels = 0;  ///< whose masks are 0 in all slots: their measurements are lost
 };
+
+/// Calls add(name, value) for each figure (docs/outputs.md).
+template <typename Add>
+void visit_import_figures(const ImportedStream& stream, const Add& add) {
+    const ExposureSchedule& schedule = stream.header.schedule;
+    add("rows", stream.header.shape.rows);
+    add("cols", stream.header.shape.cols);
+    add("measurements", stream.measurements);
+    add("slots", stream.measurements * schedule.period_slots());
+    add("weighted", schedule.weighted());
+    add("light_throughput", schedule.light_throughput());
+    add("light", stream.light);
+    add("unread_pixels", stream.unread_pixels);
+    add("noise_free", stream.header.calibration.noise_free);
+}
+
+/// The warning that measurements are lost; empty if none are.
+[[nodiscard]] std::string unread_text(const ImportedStream& stream, const std::string& mask_file);
 
 /// The measurement of light 1.0 if nobody says it: 255 if a measurement exceeds the sum of the
 /// weights of its pixel, so that its light would be above 1.0, else 1.

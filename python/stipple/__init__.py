@@ -14,8 +14,10 @@ from ._chip import Chip
 from ._dataset import Dataset, TrainingItem, dataset
 from ._decoder import Decoder
 from ._denoise import denoise
+from ._dictionary import dictionary
 from ._explore import explore, rivals
 from ._forward_model import ForwardModel
+from ._measurements import export, import_measurements
 from ._pipeline import Schedule, compare, decode, decode_methods, emulate, load, timing
 from ._report import report
 from ._rig import emulate_rig, synth
@@ -59,9 +61,12 @@ __all__ = [
     "decode",
     "decode_methods",
     "denoise",
+    "dictionary",
     "emulate",
     "emulate_rig",
     "explore",
+    "export",
+    "import_measurements",
     "load",
     "report",
     "rivals",

@@ -90,6 +90,52 @@ class StreamTest(ProgramTest):
             with self.assertRaisesRegex(ValueError, text):
                 stipple.emulate(np.full((9, 8, 12), 0.1), switches=switches)
 
+    def test_all_samples_are_those_of_the_slots(self):
+        light = np.random.default_rng(1).random((40, 9, 13), dtype=np.float32)
+        stream = stipple.emulate(light, schedule="tiled")
+        for first, end in ((0, 40), (17, 23), (39, 40)):
+            samples = stream.samples(range(first, end))
+            np.testing.assert_array_equal(samples, np.concatenate([stream.samples(slot) for slot in range(first, end)]))
+        self.assertEqual(stream.samples().tobytes(), stream.samples(range(40)).tobytes())
+        stream.save(self.folder / "clip.stipple")
+        file = stipple.Stream.open(self.folder / "clip.stipple")
+        np.testing.assert_array_equal(file.samples(range(20, 30)), stream.samples(range(20, 30)))
+        first = file.samples(3)
+        file.samples()
+        np.testing.assert_array_equal(file.samples(3), first)
+
+    def test_samples_add_up_the_light_of_their_open_slots(self):
+        light = np.random.default_rng(1).random((30, 8, 12), dtype=np.float32)
+        for schedule in ("tiled", "pixel_flutter", "two_bucket"):
+            sensor = stipple.Sensor("ideal", {"charge_stores": 2}) if schedule == "two_bucket" else "ideal"
+            stream = stipple.emulate(light, sensor, schedule)
+            samples = stream.samples()
+            open_slots = samples["open_slots"][:, None] >> np.arange(64, dtype=np.uint64) & 1
+            np.testing.assert_array_equal(open_slots.sum(axis=1), samples["light_slots"])
+            slots = samples["slot"] + 1 - samples["exposure_slots"]
+            slots = np.minimum(slots[:, None] + np.arange(64), 29)
+            sums = (light[slots, samples["row"][:, None], samples["col"][:, None]] * open_slots).sum(axis=1)
+            c = stream.header["calibration"]
+            step = c["gain_e_per_dn"] / c["electrons_per_unit"]
+            self.assertFalse(samples["saturated"].any())
+            self.assertLess(np.abs((samples["dn"] - c["black_level_dn"]) * step - sums).max(), 0.501 * step)
+
+    def test_saturated_samples_are_marked(self):
+        light = np.full((20, 4, 6), 0.1, np.float32)
+        light[:, 2] = 100
+        samples = stipple.emulate(light, "ideal", "tiled").samples()
+        np.testing.assert_array_equal(samples["saturated"], samples["row"] == 2)
+
+    def test_ranges_that_there_are_not_are_refused(self):
+        stream = stipple.emulate(np.full((5, 6, 10), 0.2))
+        for slots, error, text in ((range(3, 6), IndexError, "slots 3 to 5: the stream holds 5"), (range(2, 2), ValueError, "holds no slot"),
+                                   (range(-1, 3), ValueError, "slots: -1 is outside"), (range(0, 4, 2), TypeError, "is not range"),
+                                   ("all", TypeError, "is not range"), (1.5, TypeError, "")):
+            with self.subTest(slots), self.assertRaisesRegex(error, text):
+                stream.samples(slots)
+        with stipple.MaxMemory("1M"), self.assertRaisesRegex(ValueError, "needs .* of memory for the samples"):
+            stipple.emulate(np.full((5, 100, 100), 0.2), schedule="full1x", sensor="ideal").samples()
+
     def test_a_slot_beyond_the_end_is_an_IndexError(self):
         stream = stipple.emulate(np.full((5, 6, 10), 0.2))
         for slot in (-1, 5):

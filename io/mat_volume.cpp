@@ -1,4 +1,4 @@
-#include "apps/mat_volume.h"
+#include "io/mat_volume.h"
 
 #include <fmt/format.h>
 
@@ -17,7 +17,6 @@
 #include <string_view>
 #include <vector>
 
-#include "apps/standard_streams.h"
 #include "core/error.h"
 #include "core/geometry.h"
 #include "core/index.h"
@@ -204,9 +203,9 @@ NpyVolume read_here(const std::string& file, const std::string& name) {
     const std::string where = fmt::format("{}: variable \"{}\"", file, name);
     const MatVariable described(Mat_VarReadInfo(mat.get(), name.c_str()));
     if (!described)
-        throw InputError(where, fmt::format("is missing; the file holds {}; other names: "
-                                            "--variable, --mask-variable",
-                                            names_in(mat.get())));
+        throw InputError(where, fmt::format("is missing; the file holds {}; other names: ",
+                                            names_in(mat.get())) +
+                                    Parameter{"variable"} + ", " + Parameter{"mask_variable"});
     NpyVolume volume = volume_of(*described, where);
     const std::size_t values = index(volume.layers) * index(volume.rows) * index(volume.cols);
     check_memory(2 * sizeof(double) * values, where, "the array");
@@ -240,6 +239,29 @@ void receive(std::FILE* file, std::span<std::byte> bytes, const std::string& whe
                          "is damaged");
 }
 
+constexpr char kParameter = '\x1F', kValue = '\x1E';
+
+/// A parameter between two kParameter, for message_of.
+std::string marked(const Parameter& parameter) {
+    return kParameter + parameter.name + kValue + parameter.value + kParameter;
+}
+
+/// The message of such a text.
+Message message_of(std::string_view text) {
+    Message message;
+    for (bool is_parameter = false;; is_parameter = !is_parameter) {
+        const std::string_view part = text.substr(0, text.find(kParameter));
+        const auto value = part.find(kValue);
+        if (is_parameter && value != std::string_view::npos)
+            message +=
+                Parameter{std::string(part.substr(0, value)), std::string(part.substr(value + 1))};
+        else if (!part.empty())
+            message += part;
+        if (part.size() == text.size()) return message;
+        text.remove_prefix(part.size() + 1);
+    }
+}
+
 /// From now on, this process takes little more memory and time than a whole file may need.
 void limit_process(const std::string& file) {
     constexpr rlim_t kSlackBytes = 16U << 20U, kSeconds = 10, kBytesPerSecond = 1'000'000;
@@ -266,9 +288,9 @@ void read_for(std::FILE* reply, const std::string& file, const std::string& name
               .cols = volume.cols},
              std::as_bytes(std::span(volume.values)));
     } catch (const InputError& e) {
-        const std::string text = e.message().text(in_options);
+        const std::string text = e.message().text(marked);
         send(reply,
-             {.kind = Reply::Kind::kInputError, .where_bytes = e.where().text(in_options).size()},
+             {.kind = Reply::Kind::kInputError, .where_bytes = e.where().text(marked).size()},
              std::as_bytes(std::span(text)));
     } catch (const std::bad_alloc&) {
         send(reply, {.kind = Reply::Kind::kNoMemory}, {});
@@ -284,8 +306,8 @@ NpyVolume received_volume(std::FILE* file, const std::string& where) {
         constexpr std::size_t kColon = 2;
         std::string text(reply.bytes, '\0');
         receive(file, std::as_writable_bytes(std::span(text)), where);
-        throw InputError(text.substr(0, reply.where_bytes),
-                         text.substr(reply.where_bytes + kColon));
+        throw InputError(message_of(text.substr(0, reply.where_bytes)),
+                         message_of(text.substr(reply.where_bytes + kColon)));
     }
     NpyVolume volume{.layers = reply.layers, .rows = reply.rows, .cols = reply.cols, .values = {}};
     volume.values.resize(reply.bytes / sizeof(double));
