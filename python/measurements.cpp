@@ -40,10 +40,10 @@ struct ExportTask {
 
 ExportTask export_task(const std::string& masks, const py::object& slots,
                        const std::optional<fs::path>& calibration) {
-    ExportTask task{.calibration = calibration};
+    ExportTask task{.options = {}, .calibration = calibration};
     task.options.masks = value_in(kExportMasks, masks, "masks");
     if (slots.is_none()) return task;
-    const SlotRange range = slots_in(slots, "slots");
+    const StreamSlots range = slots_in(slots, "slots");
     if (range.end > std::numeric_limits<int>::max())
         throw InputError("slots", fmt::format("{} is too far", range.end));
     task.options.slots = {static_cast<int>(range.first), static_cast<int>(range.end)};

@@ -33,10 +33,22 @@ const ExposureSchedule& only_schedule(const StreamFile& stream) {
     return stream.header().schedule;
 }
 
+constexpr char kSamplesText[] =
+    R"(The samples of a slot, of a range of slots, or of all slots, in the order of the readout: a
+structured array with the fields slot (read at its end), row, col, plane, exposure_slots (slots since
+the exposure began), light_slots (of these, with the shutter open), saturated (a lower bound only),
+open_slots (bit i: the shutter was open in slot + 1 - exposure_slots + i) and dn. Slots of an exposure
+are 0 where they are unknown, after a switch that is missing. saturated is by the calibration in the
+header.
+
+slots: a slot, range(first, end), or None for all. Slot by slot is fast; going back begins at the first.
+
+Raises IndexError for slots that there are not, ValueError if the samples need too much memory.)";
+
 /// `slots` is None or a range of step 1.
 py::array samples_in(StreamFile& stream, const py::object& slots) {
     if (slots.is_none()) return stream.samples_between(0, stream.slots());
-    const SlotRange range = slots_in(slots, "slots");
+    const StreamSlots range = slots_in(slots, "slots");
     return stream.samples_between(range.first, range.end);
 }
 
@@ -130,18 +142,7 @@ void bind_stream(py::module_& module) {
             "The weights of its schedule, as Schedule.weights().")
         .def("slots", &StreamFile::slots, "Number of slots. Reads an interrupted stream through.")
         .def("samples", &StreamFile::samples, py::arg("slot"))
-        .def(
-            "samples", &samples_in, py::arg("slots") = py::none(),
-            R"(The samples of a slot, of a range of slots, or of all slots, in the order of the readout: a
-structured array with the fields slot (read at its end), row, col, plane, exposure_slots (slots since
-the exposure began), light_slots (of these, with the shutter open), saturated (a lower bound only),
-open_slots (bit i: the shutter was open in slot + 1 - exposure_slots + i) and dn. Slots of an exposure
-are 0 where they are unknown, after a switch that is missing. saturated is by the calibration in the
-header.
-
-slots: a slot, range(first, end), or None for all. Slot by slot is fast; going back begins at the first.
-
-Raises IndexError for slots that there are not, ValueError if the samples need too much memory.)")
+        .def("samples", &samples_in, py::arg("slots") = py::none(), kSamplesText)
         .def("counts", &counts_of,
              "Reads the stream through: what it holds and what is damaged, as \"stipple info\".")
         .def("save", &StreamFile::save, py::arg("path"), py::arg("force") = false,

@@ -81,7 +81,6 @@ class StreamFile {
     pybind11::object figures_;
     std::optional<StreamReader> reader_;  ///< until it is closed
     SamplePacket packet_;                 ///< that `reader_` has read last
-    SampleRows rows_;                     ///< of one slot
     bool has_packet_ = false;             ///< else `reader_` has read none, or is at the end
     std::optional<std::int64_t> slots_;
 };

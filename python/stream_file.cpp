@@ -132,29 +132,33 @@ py::array StreamFile::samples(std::int64_t slot) {
         check_signals();
         advance();
     }
-    for (; has_packet_ && packet_.slot == slot; advance()) rows_.add(packet_, header());
-    return rows_.take();
+    std::vector<SamplePacket> packets;
+    for (; has_packet_ && packet_.slot == slot; advance()) packets.push_back(packet_);
+    return sample_rows(header(), packets, name());
 }
 
 py::array StreamFile::samples_between(std::int64_t begin, std::int64_t end) {
     if (begin < 0 || end > slots())
         throw py::index_error(
             fmt::format("slots {} to {}: the stream holds {}", begin, end - 1, slots()));
-    SampleRows rows;
+    std::vector<SamplePacket> packets;
     StreamReader reader = this->reader();
     CallProgress progress(py::none(), end - begin);
     {
         const py::gil_scoped_release released;
+        std::uint64_t samples = 0;
         reader.seek(begin);
-        SamplePacket packet;
-        while (reader.next(packet) && packet.slot < end) {
-            if (packet.slot >= begin) rows.add(packet, reader.header());
-            check_memory(rows.bytes(), name(), "the samples");
+        for (SamplePacket packet; reader.next(packet) && packet.slot < end;) {
             if (!progress.reach(static_cast<double>(packet.slot - begin))) break;
+            if (packet.slot < begin) continue;
+            samples += packet.dn.size();
+            check_memory(samples * (sizeof(SampleRow) + sizeof(packet.dn[0])), name(),
+                         "the samples");
+            packets.push_back(packet);
         }
     }
     progress.finish();
-    return rows.take();
+    return sample_rows(reader.header(), packets, name());
 }
 
 void StreamFile::save(const fs::path& file, bool force) const {

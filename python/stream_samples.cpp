@@ -3,10 +3,15 @@
 #include <fmt/format.h>
 
 #include <bit>
-#include <span>
-#include <utility>
+#include <map>
+#include <memory>
+#include <vector>
 
 #include "core/error.h"
+#include "core/index.h"
+#include "core/memory_limit.h"
+#include "core/parallel.h"
+#include "decoder/pixel_response.h"
 #include "python/bindings.h"
 #include "python/errors.h"
 #include "stream/schedule_switch.h"
@@ -28,50 +33,65 @@ std::uint64_t open_slots_of(std::span<const SchedulePart> parts, const ScheduleP
     return schedule.exposures(row, col)[i].open_slots;
 }
 
-}  // namespace
-
-void SampleRows::add(const SamplePacket& packet, const StreamHeader& header) {
-    if (packet.dn.empty()) return;
+/// The samples of a packet, by `responses` of the part of the schedule that holds in its slot.
+void fill(const StreamHeader& header, const SamplePacket& packet, const PixelResponses& responses,
+          SampleRow* row) {
     const auto parts = schedule_parts(header);
     const SchedulePart part = schedule_at(header, packet.slot);
-    if (!responses_ || responses_begin_ != part.first_slot) {
-        responses_begin_ = part.first_slot;
-        responses_.emplace(calibration_at(header, packet.slot));
-    }
-    auto dn = packet.dn.begin();
     const std::int64_t slot = readout_slot(part, packet.slot);
-    for (int row = packet.first_row; row < packet.first_row + packet.rows; ++row)
-        visit_due_pixels(
-            *part.schedule, slot, row, header.shape.cols, [&](int col, const DuePixel& pixel) {
-                const std::uint64_t open_slots =
-                    open_slots_of(parts, part, {packet.slot, row, col}, pixel);
-                const PixelResponse& response = responses_->at(row, col);
-                for (int plane = 0; plane < header.shape.planes; ++plane, ++dn)
-                    rows_->push_back(
-                        {.slot = packet.slot,
-                         .row = static_cast<std::uint16_t>(row),
-                         .col = static_cast<std::uint16_t>(col),
-                         .plane = static_cast<std::uint8_t>(plane),
-                         .exposure_slots = static_cast<std::uint8_t>(std::bit_width(open_slots)),
-                         .light_slots = static_cast<std::uint8_t>(std::popcount(open_slots)),
-                         .saturated = response.saturated(*dn),
-                         .open_slots = open_slots,
-                         .dn = *dn,
-                         .zero = {}});
-            });
+    auto dn = packet.dn.begin();
+    const auto add = [&](const PixelSlot& at, std::uint64_t open_slots) {
+        const PixelResponse& response = responses.at(at.row, at.col);
+        for (int plane = 0; plane < header.shape.planes; ++plane, ++dn)
+            *row++ = {.slot = packet.slot,
+                      .row = static_cast<std::uint16_t>(at.row),
+                      .col = static_cast<std::uint16_t>(at.col),
+                      .plane = static_cast<std::uint8_t>(plane),
+                      .exposure_slots = static_cast<std::uint8_t>(std::bit_width(open_slots)),
+                      .light_slots = static_cast<std::uint8_t>(std::popcount(open_slots)),
+                      .saturated = response.saturated(*dn),
+                      .open_slots = open_slots,
+                      .dn = *dn,
+                      .zero = {}};
+    };
+    for (int y = packet.first_row; y < packet.first_row + packet.rows; ++y)
+        visit_due_pixels(*part.schedule, slot, y, header.shape.cols,
+                         [&](int col, const DuePixel& pixel) {
+                             const PixelSlot at{packet.slot, y, col};
+                             add(at, open_slots_of(parts, part, at, pixel));
+                         });
 }
 
-py::array SampleRows::take() {
-    auto rows = std::exchange(rows_, std::make_unique<std::vector<SampleRow>>());
-    const py::capsule owner(
-        rows.get(), [](void* memory) { delete static_cast<std::vector<SampleRow>*>(memory); });
-    const auto size = static_cast<py::ssize_t>(rows->size());
-    return py::array_t<SampleRow>(size, rows.release()->data(), owner);
+}  // namespace
+
+py::array sample_rows(const StreamHeader& header, std::span<const SamplePacket> packets,
+                      const std::string& name) {
+    std::map<std::int64_t, PixelResponses> responses;  // by first slot of their part
+    std::vector<std::size_t> first{0};                 // row of each packet
+    for (const SamplePacket& packet : packets) {
+        first.push_back(first.back() + packet.dn.size());
+        const std::int64_t begin = schedule_at(header, packet.slot).first_slot;
+        if (!responses.contains(begin)) responses.emplace(begin, calibration_at(header, begin));
+    }
+    check_memory(first.back() * sizeof(SampleRow), name, "the samples");
+    auto rows = std::make_unique_for_overwrite<SampleRow[]>(first.back());
+    {
+        const py::gil_scoped_release released;
+        parallel_for(0, static_cast<int>(packets.size()), [&](int i) {
+            const SamplePacket& packet = packets[index(i)];
+            if (packet.dn.empty()) return;  // dropped
+            fill(header, packet, responses.at(schedule_at(header, packet.slot).first_slot),
+                 rows.get() + first[index(i)]);
+        });
+    }
+    const py::capsule owner(rows.get(),
+                            [](void* memory) { delete[] static_cast<SampleRow*>(memory); });
+    return py::array_t<SampleRow>(static_cast<py::ssize_t>(first.back()), rows.release(), owner);
 }
 
-SlotRange slots_in(const py::object& value, const char* argument) {
+StreamSlots slots_in(const py::object& value, const char* argument) {
     const bool is_range = py::isinstance(value, py::module_::import("builtins").attr("range"));
-    if (!is_range || !value.attr("step").equal(py::int_(1)))
+    if (!is_range || !py::int_(1).equal(value.attr("step")))
         throw py::type_error(
             fmt::format("{}: {} is not range(first, end)", argument, short_text(value)));
     constexpr std::uint64_t kMax = std::uint64_t{1} << 53U;  // as of a stream

@@ -52,8 +52,8 @@ def _numbers(value: npt.ArrayLike, argument: str) -> npt.NDArray[Any]:
     array = np.asarray(value)
     if array.dtype.kind not in "biuf":
         raise TypeError(f"{argument}: {array.dtype} are no real numbers")
-    if np.ma.is_masked(value):
-        raise ValueError(f"{argument}: has masked values; give them numbers first: {argument}.filled(0)")
+    if isinstance(value, np.ma.MaskedArray):
+        raise ValueError(f"{argument}: may have masked values; give {argument}.filled(0)")
     return array
 
 

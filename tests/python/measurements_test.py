@@ -93,7 +93,7 @@ class MeasurementsTest(ProgramTest):
                 (TypeError, "arrays for both", good, "masks.npy", {}),
                 (TypeError, "arrays for both", good, None, {}),
                 (TypeError, "measurements: complex128 are no real numbers", good.astype(complex), good, {}),
-                (ValueError, "masks: has masked values", good, np.ma.masked_less(good, 2), {}),
+                (ValueError, "masks: may have masked values", good, np.ma.masked_less(good, 2), {}),
                 (ValueError, "masks: is needed", "meas.npy", None, {}),
                 (FileNotFoundError, "none.npz", "none.npz", None, {})):
             with self.subTest(text):

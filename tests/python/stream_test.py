@@ -123,7 +123,8 @@ class StreamTest(ProgramTest):
     def test_saturated_samples_are_marked(self):
         light = np.full((20, 4, 6), 0.1, np.float32)
         light[:, 2] = 100
-        samples = stipple.emulate(light, "ideal", "tiled").samples()
+        with self.assertWarnsRegex(UserWarning, "mean light"):
+            samples = stipple.emulate(light, "ideal", "tiled").samples()
         np.testing.assert_array_equal(samples["saturated"], samples["row"] == 2)
 
     def test_ranges_that_there_are_not_are_refused(self):
@@ -133,8 +134,9 @@ class StreamTest(ProgramTest):
                                    ("all", TypeError, "is not range"), (1.5, TypeError, "")):
             with self.subTest(slots), self.assertRaisesRegex(error, text):
                 stream.samples(slots)
+        large = stipple.emulate(np.full((20, 100, 100), 0.2), schedule="tiled")
         with stipple.MaxMemory("1M"), self.assertRaisesRegex(ValueError, "needs .* of memory for the samples"):
-            stipple.emulate(np.full((5, 100, 100), 0.2), schedule="full1x", sensor="ideal").samples()
+            large.samples()
 
     def test_a_slot_beyond_the_end_is_an_IndexError(self):
         stream = stipple.emulate(np.full((5, 6, 10), 0.2))

@@ -10,7 +10,6 @@
 #include "readout/schedules/tiled_schedule.h"
 #include "tests/decoder/recordings.h"
 #include "tests/stream/stream_bytes.h"
-#include "tests/support/paper_schedule.h"
 #include "tests/support/temporary_folder.h"
 
 namespace stipple {
@@ -69,7 +68,8 @@ TEST_F(MeasurementExportTest, SharedMasksAddUpTheLight) {
 }
 
 TEST_F(MeasurementExportTest, OwnMasksAddUpTheLight) {
-    const ExposureSchedule schedule = tiled_schedule(2, 3, kPaperExposureSlots, 1);
+    constexpr int kLengths[] = {1, 2};
+    const ExposureSchedule schedule = tiled_schedule(2, 3, kLengths, 1);
     const MeasurementExport result =
         exported(reader(schedule), {.masks = ExportMasks::kOwn, .slots = {.begin = 2, .end = 19}});
     EXPECT_EQ(result.slots, 17);
