@@ -112,6 +112,7 @@ std::string_view header_of(std::span<const std::uint8_t> bytes, std::string_view
 void check_extent(const std::map<std::string, Entry>& entries, std::uint64_t bytes,
                   std::string_view where) {
     std::vector<const Entry*> sorted;
+    sorted.reserve(entries.size());
     for (const auto& [name, entry] : entries) sorted.push_back(&entry);
     std::ranges::sort(sorted, {}, &Entry::begin);
     std::uint64_t filled = 0;
