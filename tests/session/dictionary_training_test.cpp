@@ -42,7 +42,7 @@ TEST(DictionaryTrainingTest, LearnsAtomsOfNormOne) {
     ASSERT_EQ(dictionary.atoms, 8);
     for (int i = 0; i < dictionary.atoms; ++i) {
         double norm = 0;
-        for (const float value : dictionary.atom(i)) norm += double{value} * double{value};
+        for (const float value : dictionary.atom(i)) norm += static_cast<double>(value * value);
         EXPECT_NEAR(norm, 1, 1e-5);
     }
     const TemporaryFolder folder;

@@ -61,7 +61,7 @@ TEST_F(MeasurementExportTest, SharedMasksAddUpTheLight) {
                 double sum = 0;
                 for (int t = 0; t < 5; ++t)
                     sum += mask(result)[index(t) * 24 + row_major(row, col, 6)] *
-                           double{video_.frame(5 * m + t)[row_major(row, col, 6)]};
+                           static_cast<double>(video_.frame(5 * m + t)[row_major(row, col, 6)]);
                 EXPECT_NEAR(meas(result)[index(m) * 24 + row_major(row, col, 6)], sum, kHalfDn);
                 EXPECT_EQ(sum > 0, col % 3 < 2);
             }
@@ -78,7 +78,7 @@ TEST_F(MeasurementExportTest, OwnMasksAddUpTheLight) {
             double sum = 0;
             for (int t = 0; t < 17; ++t)
                 sum += mask(result)[(index(k) * 17 + index(t)) * 24 + pixel] *
-                       double{video_.frame(t + 2)[pixel]};
+                       static_cast<double>(video_.frame(t + 2)[pixel]);
             EXPECT_NEAR(meas(result)[index(k) * 24 + pixel], sum, kHalfDn);
         }
 }
@@ -100,7 +100,7 @@ TEST_F(MeasurementExportTest, IsWrittenAsTheNameSays) {
         write_export(result, output);
     }
     EXPECT_EQ(read_npz_volume(folder_ / "a.npz", "meas").at(3, 2, 1),
-              double{meas(result)[3 * 24 + row_major(2, 1, 6)]});
+              static_cast<double>(meas(result)[3 * 24 + row_major(2, 1, 6)]));
     EXPECT_EQ(read_text(folder_ / "a.mat").substr(0, 6), "MATLAB");
 }
 
