@@ -93,16 +93,7 @@ class RunExploration {
     /// Runs the trial of the last `begin`, and takes its outcome.
     void run(std::uint64_t number) {
         try {
-            unlocked([&] {
-                try {
-                    const Trial& trial = exploration_.trial();
-                    const auto stream = exploration_.store().stream_of(trial.identity);
-                    exploration_.put(number, run_trial(trial, exploration_.light(), stream,
-                                                       [this] { return progress_->reach(done_); }));
-                } catch (const InputError& e) {
-                    exploration_.fail(number, e.message());
-                }
-            });
+            unlocked([&] { put_or_fail(number); });
         } catch (const DecoderFault& fault) {
             throw py::value_error(fmt::format("{}; in {}", fault.what(), where(number)));
         } catch (DecoderRaised& raised) {
@@ -130,6 +121,16 @@ class RunExploration {
     [[nodiscard]] const Exploration& exploration() const { return exploration_; }
 
   private:
+    void put_or_fail(std::uint64_t number) {
+        try {
+            const Trial& trial = exploration_.trial();
+            const auto stream = exploration_.store().stream_of(trial.identity);
+            exploration_.put(number, run_trial(trial, exploration_.light(), stream,
+                                               [this] { return progress_->reach(done_); }));
+        } catch (const InputError& e) {
+            exploration_.fail(number, e.message());
+        }
+    }
     /// For messages: which trial.
     [[nodiscard]] std::string where(std::uint64_t number) const {
         const std::string name = exploration_.name_of(number);
