@@ -45,7 +45,7 @@ FluxVideo video_of(const py::object& result, const std::string& decoder) {
 }  // namespace
 
 DecoderRaised::DecoderRaised(const std::string& decoder, py::error_already_set& raised)
-    : decoder_(decoder), raised_(raised) {}
+    : decoder_(decoder), raised_(raised) {}  // NOLINT(bugprone-throw-keyword-missing): a member
 
 void DecoderRaised::raise(const std::string& where) {
     if (!raised_.matches(PyExc_Exception)) throw raised_;
