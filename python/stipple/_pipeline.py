@@ -239,7 +239,8 @@ def decode(
     if denoiser is not None:
         task.set_denoiser(_denoise.as_called(denoiser))
     with _stipple.Threads(threads):
-        if isinstance(stream, (str, PathLike)) and _stipple.is_rig_folder(stream):
+        is_path = isinstance(stream, (str, PathLike)) and not isinstance(stream, Stream)
+        if is_path and _stipple.is_rig_folder(stream):
             return _stipple.decode_rig(stream, task, progress)
         source = stream if isinstance(stream, Stream) else Stream.open(stream)
         return _stipple.decode(source, task, progress)
