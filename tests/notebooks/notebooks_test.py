@@ -12,6 +12,7 @@ from pathlib import Path
 from program import project_path
 
 NEEDED = {"nbconvert": "jupyter-nbconvert", "ipykernel": "python3-ipykernel", "matplotlib": "python3-matplotlib"}
+TORCH = ("learned_schedule.ipynb", "plug_in_a_denoiser.ipynb")
 MISSING = [package for module, package in NEEDED.items() if importlib.util.find_spec(module) is None]
 
 
@@ -20,7 +21,7 @@ class NotebooksTest(unittest.TestCase):
 
     def test_they_are_stored_without_results(self):
         """So that a change of a figure is no change of the file. Jupyter: Cell > All Output > Clear."""
-        self.assertEqual(len(self.notebooks), 2)
+        self.assertEqual(len(self.notebooks), 5)
         for path in self.notebooks:
             for cell in json.loads(path.read_text())["cells"]:
                 if cell["cell_type"] == "code":
@@ -30,6 +31,8 @@ class NotebooksTest(unittest.TestCase):
     def test_each_cell_runs_and_each_figure_is_drawn(self):
         for path in self.notebooks:
             with self.subTest(path.name), tempfile.TemporaryDirectory(prefix="stipple_") as folder:
+                if path.name in TORCH and importlib.util.find_spec("torch") is None:
+                    self.skipTest("missing: python3-torch")
                 self.check(path, self.execute(path, Path(folder)))
 
     def execute(self, path, folder):
