@@ -24,6 +24,7 @@ void bind_dictionary(py::module_& module);
 void bind_explore(py::module_& module);
 void bind_timing(py::module_& module);
 void bind_recording(py::module_& module);
+void bind_calibrate(py::module_& module);
 void bind_characterize(py::module_& module);
 void bind_camera(py::module_& module);
 void bind_camera_frames(py::module_& module);

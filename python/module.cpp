@@ -42,6 +42,7 @@ PYBIND11_MODULE(_stipple, module) {
     bind_explore(module);
     bind_timing(module);
     bind_recording(module);
+    bind_calibrate(module);
     bind_characterize(module);
     bind_camera(module);
     bind_camera_frames(module);

@@ -9,6 +9,7 @@ and values are those of the program `stipple`, whose documentation holds here to
 ValueError, errors of files OSError, both with the program's texts."""
 
 from . import capture
+from ._calibrate import calibrate
 from ._characterize import characterize, characterize_images
 from ._chip import Chip
 from ._dataset import Dataset, TrainingItem, dataset
@@ -53,6 +54,7 @@ __all__ = [
     "VideoQuality",
     "View",
     "__version__",
+    "calibrate",
     "capture",
     "characterize",
     "characterize_images",

@@ -25,6 +25,8 @@ db: float = stipple.compare(result, video, margin=1).psnr_db
 rows: int = stream.samples(0)["row"].size + stream.header["rows"]
 series = [(5e6, 0.0, np.zeros((2, 4, 4), np.uint16))]
 figures = [stipple.characterize(sensor, progress=print), stipple.characterize_images(series, bits=12)]
+gain = stipple.calibrate("t6.stcal", sensor=sensor, size=(8, 8), progress=print)["gain"]
+gain = stipple.calibrate(Path("a.stcal"), dark=stream, flat=["a.stipple", stream])["gain"]
 settings = {"PixelFormat": "Mono12", "ExposureTime": 2000}
 recording = stipple.capture.record("replay:a.npy", Path("a.strec"), settings=settings, seconds=1.5)
 live = stipple.capture.live("replay:a.npy", sensor, schedule, frames=5, progress=lambda done, frames: done < 4)
