@@ -1,5 +1,6 @@
 """Configuration of Sphinx. scripts/site gathers the pages in one folder, and calls Sphinx there."""
 
+import importlib.util
 import os
 import re
 import sys
@@ -29,6 +30,7 @@ breathe_domain_by_extension = {"h": "cpp"}
 
 autodoc_member_order = "bysource"
 autodoc_typehints = "description"
+autodoc_mock_imports = [] if importlib.util.find_spec("torch") else ["torch"]
 
 
 def fields_of_arguments(app, what, name, subject, options, lines):
