@@ -104,12 +104,13 @@ class Config {
 };
 
 /// Kinds of configuration files.
-enum class ConfigKind : std::uint8_t { kSensors, kSchedules, kSpaces, kRigs };
+enum class ConfigKind : std::uint8_t { kSensors, kSchedules, kSpaces, kRigs, kModels };
 
-/// The folder of a kind: "sensors", "schedules", "spaces", "rigs".
+/// The folder of a kind: "sensors", "schedules", "spaces", "rigs", "models".
 [[nodiscard]] std::string_view folder_of(ConfigKind kind);
 
-/// Finds `name` as a file, or as `<config folder>/<folder of the kind>/<name>.toml`.
+/// Finds `name` as a file, or as `<config folder>/<folder of the kind>/<name>.toml`; a model as
+/// `<name>.safetensors`.
 /// \throws InputError naming the one that was probably meant, or all there are.
 [[nodiscard]] std::filesystem::path find_config(ConfigKind kind, std::string_view name);
 

@@ -17,7 +17,7 @@ namespace stipple {
 namespace fs = std::filesystem;
 namespace {
 
-/// Folders that hold sensors/, schedules/, spaces/ and rigs/; the first one that has a name wins.
+/// Folders that hold sensors/, schedules/ and the other kinds; the first one that has a name wins.
 std::vector<fs::path> config_folders() {
     std::vector<fs::path> folders;
     if (const char* folder = std::getenv("STIPPLE_CONFIG_DIR")) folders.emplace_back(folder);
@@ -29,6 +29,10 @@ std::vector<fs::path> config_folders() {
     if (&stipple_package_config_dir != nullptr) folders.emplace_back(stipple_package_config_dir());
     folders.emplace_back(STIPPLE_INSTALLED_CONFIG_DIR);
     return folders;
+}
+
+std::string_view extension_of(ConfigKind kind) {
+    return kind == ConfigKind::kModels ? ".safetensors" : ".toml";
 }
 
 /// "A, B and C" of the folders.
@@ -50,6 +54,8 @@ std::string_view folder_of(ConfigKind kind) {
             return "spaces";
         case ConfigKind::kRigs:
             return "rigs";
+        case ConfigKind::kModels:
+            return "models";
     }
     return {};
 }
@@ -59,7 +65,8 @@ std::vector<std::string> config_names(ConfigKind kind) {
     for (const fs::path& folder : config_folders()) {
         std::error_code error;
         for (const auto& entry : fs::directory_iterator(folder / folder_of(kind), error))
-            if (entry.path().extension() == ".toml") names.insert(entry.path().stem().string());
+            if (entry.path().extension() == extension_of(kind))
+                names.insert(entry.path().stem().string());
     }
     return {names.begin(), names.end()};
 }
@@ -76,10 +83,10 @@ fs::path find_config(ConfigKind kind, std::string_view name) {
     std::error_code error;
     fs::path path(name);
     if (fs::is_regular_file(path, error)) return path;
-    if (name.find('/') != std::string_view::npos || path.extension() == ".toml")
+    if (name.find('/') != std::string_view::npos || path.extension() == extension_of(kind))
         throw InputError(name, "there is no such file");
     for (const fs::path& folder : config_folders()) {
-        fs::path file = folder / folder_of(kind) / fmt::format("{}.toml", name);
+        fs::path file = folder / folder_of(kind) / fmt::format("{}{}", name, extension_of(kind));
         if (fs::is_regular_file(file, error)) return file;
     }
     require_configs(kind);

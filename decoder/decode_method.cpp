@@ -21,6 +21,7 @@
 #include "decoder/fast/motion_tv.h"
 #include "decoder/frame_exposures.h"
 #include "decoder/hitomi2011/hitomi2011.h"
+#include "decoder/learned/learned.h"
 #include "decoder/live/live_decoder.h"
 #include "decoder/measurements.h"
 #include "decoder/naive/nearest_samples.h"
@@ -101,6 +102,30 @@ constexpr NamedDecodeMethod kMethods[] = {
          return decode_with_prior(block, [](const PriorTask& task) {
              return decode_collaborative(task.measurements, task.noise, task.options.best,
                                          task.progress);
+         });
+     }},
+    {"learned_fast", DecodeMethod::kLearnedFast, false, false,
+     "fast, refined by a network: near best", kMaxCoreSites, 90, 3.5,
+     [](Config& config, DecodeOptions& options) {
+         read_options(config, options.fast);
+         read_options(config, options.learned);
+     },
+     [](const BlockTask& block) {
+         return decode_with_prior(block, [](const PriorTask& task) {
+             return decode_learned_fast({task.measurements, task.noise, task.progress},
+                                        task.options.fast, task.options.learned.refine);
+         });
+     }},
+    {"learned", DecodeMethod::kLearned, false, false, "best, refined by a network", kMaxCoreSites,
+     90, 12.5,
+     [](Config& config, DecodeOptions& options) {
+         read_options(config, options.best);
+         read_options(config, options.learned);
+     },
+     [](const BlockTask& block) {
+         return decode_with_prior(block, [](const PriorTask& task) {
+             return decode_learned({task.measurements, task.noise, task.progress},
+                                   task.options.best, task.options.learned.refine);
          });
      }},
     {"plug_and_play", DecodeMethod::kPlugAndPlay, true, false,

@@ -22,6 +22,8 @@ enum class DecodeMethod {
     kLive,         ///< residuals of samples blurred in space, for a picture while filming
     kFast,         ///< motion-compensated total variation
     kBest,         ///< collaborative filter of similar patches
+    kLearnedFast,  ///< the estimate of fast, refined by a network
+    kLearned,      ///< the estimate of best, refined by a network
     kPlugAndPlay,  ///< the same with a denoiser of the user
     kPortz2013,    ///< the method of the paper, in two stages
     // Of other coded cameras.

@@ -11,6 +11,7 @@
 #include "decoder/decode_method.h"
 #include "decoder/fast/motion_tv.h"
 #include "decoder/hitomi2011/hitomi2011.h"
+#include "decoder/learned/learned.h"
 #include "decoder/plug_and_play/plug_and_play.h"
 #include "decoder/portz2013/portz2013.h"
 #include "decoder/reddy2011/reddy2011.h"
@@ -21,8 +22,9 @@ namespace stipple {
 /// A method and the options of all methods; only those of `method` are used.
 struct DecodeOptions {
     DecodeMethod method = DecodeMethod::kBest;
-    MotionTvOptions fast = {};
-    CollaborativeOptions best = {};  ///< of `plug_and_play` too
+    MotionTvOptions fast = {};       ///< of `learned_fast` too
+    CollaborativeOptions best = {};  ///< of `learned` and `plug_and_play` too
+    LearnedOptions learned = {};     ///< of `learned_fast` too
     PlugAndPlayOptions plug_and_play = {};
     Portz2013Options portz2013 = {};
     Reddy2011Options reddy2011 = {};

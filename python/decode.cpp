@@ -21,6 +21,7 @@
 #include "python/denoiser.h"
 #include "python/errors.h"
 #include "python/footage.h"
+#include "python/refiner.h"
 #include "python/sensor.h"
 #include "python/stream.h"
 #include "session/decode_session.h"
@@ -43,8 +44,18 @@ struct DecodeTask {
     }
 };
 
+void set_refiner(DecodeOptions& options, const py::object& call) {
+    if (options.method != DecodeMethod::kLearned && options.method != DecodeMethod::kLearnedFast)
+        throw InputError("refiner", fmt::format("is for the methods learned and learned_fast, not "
+                                                "for {}",
+                                                named(options.method).name));
+    if (!options.learned.model_file.empty())
+        throw InputError("refiner", "is given twice, as a function and as an option");
+    options.learned.refine = python_refiner(call);
+}
+
 DecodeTask decode_task(const py::object& method, const py::dict& settings, bool fill_gaps,
-                       bool strict, std::optional<std::int64_t> until) {
+                       bool strict, std::optional<std::int64_t> until, const py::object& refiner) {
     if (until && *until < 1) throw InputError("until", fmt::format("{} is not above 0", *until));
     if (!py::isinstance<py::str>(method))
         throw py::type_error(fmt::format("method: {} is not a text", short_text(method)));
@@ -58,7 +69,10 @@ DecodeTask decode_task(const py::object& method, const py::dict& settings, bool 
         throw InputError("options",
                          "hitomi2011 needs {\"dictionary\": FILE}, which a command makes: "
                          "stipple dictionary FOOTAGE -o FILE.npy");
-    reading(option_file(options), [&] { read_option_file(options); });
+    if (refiner.is_none())
+        reading(option_file(options), [&] { read_option_file(options); });
+    else
+        set_refiner(options, refiner);
     options.fill_gaps = fill_gaps;
     return task;
 }
@@ -173,7 +187,8 @@ std::string decoding_identity(const std::filesystem::path& stream, const DecodeT
 
 void bind_decode(py::module_& module) {
     py::class_<DecodeTask>(module, "DecodeTask")
-        .def(py::init(&decode_task))
+        .def(py::init(&decode_task), py::arg("method"), py::arg("options"), py::arg("fill_gaps"),
+             py::arg("strict"), py::arg("until"), py::arg("refiner") = py::none())
         .def_readwrite("calibration", &DecodeTask::calibration)
         .def("set_denoiser", &set_denoiser)
         .def("begin_at_block", [](DecodeTask& task, std::int64_t number) {

@@ -58,12 +58,13 @@ class ImageSeries {
 
     FieldSeries read() {
         const StreamHeader header = header_of(series_, 0);
-        require_memory(header.shape, 4, descriptor_.string());
+        const std::string name = descriptor_.string();
+        require_memory(header.shape, 4, name);
         FieldSeries fields{.header = header,
                            .dark = FieldSamples(header.shape),
                            .flats = {FieldSamples(header.shape)},
-                           .dark_name = descriptor_.string(),
-                           .flat_name = descriptor_.string(),
+                           .dark_name = name,
+                           .flat_name = name,
                            .well_known = false};
         const ImageGroup* flats = nullptr;
         for (const ImageGroup& group : series_.groups)

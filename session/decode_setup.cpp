@@ -5,12 +5,33 @@
 #include <filesystem>
 #include <utility>
 
+#include "core/config.h"
 #include "core/error.h"
 #include "core/input_file.h"
+#include "decoder/learned/learned.h"
 #include "decoder/plug_and_play/network_denoiser.h"
 #include "io/npy_file.h"
 
 namespace stipple {
+namespace {
+
+/// \throws InputError with `fault` if there is none.
+void require_file(const std::string& file, const char* fault) {
+    std::error_code error;
+    if (!std::filesystem::exists(file, error)) throw InputError(file, fault);
+}
+
+/// The weights of the file, or those of Stipple, if it has some.
+void read_model(LearnedOptions& options) {
+    std::string file = options.model_file;
+    if (!file.empty())
+        require_file(file, "there is no such network");
+    else if (!config_names(ConfigKind::kModels).empty())
+        file = find_config(ConfigKind::kModels, "refinement").string();
+    if (!file.empty()) options.refine = refinement_of(file);
+}
+
+}  // namespace
 
 DecodeSetup decode_setup(std::string_view method, Config config) {
     return {.options = read_decode_options(decode_method_from_name(method), config),
@@ -25,6 +46,9 @@ DecodeSetup read_decode_setup(std::string_view method, Config config) {
 
 std::string option_file(const DecodeOptions& options) {
     switch (options.method) {
+        case DecodeMethod::kLearned:
+        case DecodeMethod::kLearnedFast:
+            return options.learned.model_file;
         case DecodeMethod::kHitomi2011:
             return options.hitomi2011.dictionary_file;
         case DecodeMethod::kPlugAndPlay:
@@ -36,22 +60,29 @@ std::string option_file(const DecodeOptions& options) {
 
 void read_option_file(DecodeOptions& options) {
     const std::string file = option_file(options);
-    if (file.empty()) return;
-    const bool network = options.method == DecodeMethod::kPlugAndPlay;
-    std::error_code error;
-    if (!std::filesystem::exists(file, error))
-        throw InputError(
-            file, network ? "there is no such network"
-                          : "there is no such dictionary of patches; \"stipple dictionary\" makes "
-                            "one");
-    if (network) {
-        options.plug_and_play.denoiser =
-            network_denoiser(file, read_file(file), options.plug_and_play.network_frames);
-        return;
+    switch (options.method) {
+        case DecodeMethod::kLearned:
+        case DecodeMethod::kLearnedFast:
+            read_model(options.learned);
+            break;
+        case DecodeMethod::kPlugAndPlay:
+            if (file.empty()) return;
+            require_file(file, "there is no such network");
+            options.plug_and_play.denoiser =
+                network_denoiser(file, read_file(file), options.plug_and_play.network_frames);
+            break;
+        case DecodeMethod::kHitomi2011: {
+            if (file.empty()) return;
+            require_file(
+                file, "there is no such dictionary of patches; \"stipple dictionary\" makes one");
+            const NpyVolume volume = read_npy_volume(file);
+            options.hitomi2011.dictionary =
+                patch_dictionary({volume.layers, volume.rows, volume.cols}, volume.values, file);
+            break;
+        }
+        default:
+            break;
     }
-    const NpyVolume volume = read_npy_volume(file);
-    options.hitomi2011.dictionary =
-        patch_dictionary({volume.layers, volume.rows, volume.cols}, volume.values, file);
 }
 
 }  // namespace stipple

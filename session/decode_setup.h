@@ -24,8 +24,9 @@ struct DecodeSetup {
 /// The file that the options name: a dictionary of patches or a network; empty if they name none.
 [[nodiscard]] std::string option_file(const DecodeOptions& options);
 
-/// Reads that file, if there is one (decoder/ reads no files). \throws InputError if there is no
-/// such file, and as read_npy_volume and patch_dictionary, or read_file and network_denoiser.
+/// Reads that file, if there is one (decoder/ reads no files), or the weights of Stipple, if the
+/// method needs weights. \throws InputError if there is no such file, and as read_npy_volume and
+/// patch_dictionary, read_file and network_denoiser, or refinement_of.
 void read_option_file(DecodeOptions& options);
 
 }  // namespace stipple

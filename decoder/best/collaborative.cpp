@@ -293,12 +293,21 @@ CollaborativeOptions without_noise(CollaborativeOptions options) {
 std::optional<FluxVideo> decode_collaborative(Measurements& measurements, const SampleNoise& noise,
                                               const CollaborativeOptions& options,
                                               const ProgressCallback& progress) {
-    if (std::min(measurements.shape.rows, measurements.shape.cols) < kPatchSide)
-        return decode_motion_tv(measurements, noise, options.start, progress);
+    return decode_collaborative({measurements, noise, progress}, options);
+}
+
+std::optional<FluxVideo> decode_collaborative(const SplittingTask& task,
+                                              const CollaborativeOptions& options) {
+    const FrameShape shape = task.measurements.shape;
+    if (std::min(shape.rows, shape.cols) < kPatchSide) {
+        auto x = decode_motion_tv(task.measurements, task.noise, options.start, task.progress);
+        if (x && task.start != nullptr) *task.start = *x;
+        return x;
+    }
     const auto patches = [](const CollaborativeOptions& of_block, bool mosaic) {
         return PatchDenoiser(of_block, mosaic);
     };
-    return decode_by_splitting({measurements, noise, progress}, options, patches);
+    return decode_by_splitting(task, options, patches);
 }
 
 std::optional<FluxVideo> decode_by_splitting(const SplittingTask& task,
@@ -311,6 +320,7 @@ std::optional<FluxVideo> decode_by_splitting(const SplittingTask& task,
         return task.progress(kStartShare * fraction);
     });
     if (!x) return x;
+    if (task.start != nullptr) *task.start = *x;
 
     // Denoiser and data consistency in turn, for noise that decreases.
     SplittingSolver solver(task, options, denoiser(options, task.measurements.mosaic), *x);

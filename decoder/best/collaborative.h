@@ -89,6 +89,7 @@ struct SplittingTask {
     Measurements& measurements;
     const SampleNoise& noise;
     const ProgressCallback& progress;
+    FluxVideo* start = nullptr;  ///< receives the start estimate
 };
 
 /// Decodes one block: the estimate of `decode_motion_tv`, then iterations of denoiser and proximal
@@ -101,6 +102,8 @@ struct SplittingTask {
 
 /// The same with the collaborative filter (patch_denoiser.h) as the denoiser. A frame smaller than
 /// a patch keeps the start estimate.
+[[nodiscard]] std::optional<FluxVideo> decode_collaborative(const SplittingTask& task,
+                                                            const CollaborativeOptions& options);
 [[nodiscard]] std::optional<FluxVideo> decode_collaborative(
     Measurements& measurements, const SampleNoise& noise, const CollaborativeOptions& options,
     const ProgressCallback& progress = [](double) { return true; });

@@ -1,8 +1,8 @@
-"""Denoisers of the method plug_and_play: the user's, and that of best."""
+"""Functions of the user that decoders call: denoisers, refiners; and the denoiser of best."""
 
 import inspect
 import math
-from typing import Any, Callable, Mapping, Optional
+from typing import Any, Callable, Mapping, Optional, Tuple
 
 import numpy as np
 import numpy.typing as npt
@@ -12,6 +12,7 @@ from ._stipple import DenoiserStep
 
 Array = npt.NDArray[np.float32]
 Denoiser = Callable[..., Any]
+Refiner = Callable[[Array], Any]
 
 
 def _planes_first(array: npt.NDArray[Any]) -> Array:
@@ -77,6 +78,17 @@ def _takes_step(denoiser: Denoiser) -> bool:
         return False
 
 
+def _checked(name: str, result: object, shape: Tuple[int, ...]) -> Array:
+    """What a function of the user has given."""
+    array = np.asarray(result)
+    if array.dtype.kind != "f":
+        what = type(result).__name__ if array.dtype == object else f"values of {array.dtype}"
+        raise ValueError(f"{name}: gives {what}; give an array of floating-point values")
+    if array.shape != shape:
+        raise ValueError(f"{name}: gives the shape {array.shape}, not {shape}")
+    return array
+
+
 def as_called(denoiser: Denoiser) -> Denoiser:
     """The function as the decoder calls it, with its result checked."""
     takes_step = _takes_step(denoiser)
@@ -84,12 +96,18 @@ def as_called(denoiser: Denoiser) -> Denoiser:
     def call(video: Array, sigma: float, step: DenoiserStep) -> Array:
         shape = video.shape
         result = denoiser(video, sigma, step=step) if takes_step else denoiser(video, sigma)
-        array = np.asarray(result)
-        if array.dtype.kind != "f":
-            what = type(result).__name__ if array.dtype == object else f"values of {array.dtype}"
-            raise ValueError(f"denoiser: gives {what}; give an array of floating-point values")
-        if array.shape != shape:
-            raise ValueError(f"denoiser: gives the shape {array.shape}, not {shape}, that of its video")
-        return _planes_first(array)
+        return _planes_first(_checked("denoiser", result, shape))
+
+    return call
+
+
+def refiner_as_called(refiner: Refiner) -> Refiner:
+    """The function as the decoder calls it, with its result checked."""
+    if not callable(refiner):
+        raise ValueError(f"refiner: {refiner!r} is not a function of (inputs)")
+
+    def call(inputs: Array) -> Array:
+        shape = inputs.shape[1:]
+        return np.ascontiguousarray(_checked("refiner", refiner(inputs), shape), dtype=np.float32)
 
     return call

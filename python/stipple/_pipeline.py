@@ -209,6 +209,7 @@ def decode(
     strict: bool = False,
     calibration: Optional[Name] = None,
     denoiser: Optional[_denoise.Denoiser] = None,
+    refiner: Optional[_denoise.Refiner] = None,
     threads: int = 0,
     progress: Tell = None,
 ) -> npt.NDArray[np.float32]:
@@ -230,10 +231,14 @@ def decode(
         without noise, an array of its shape (docs/research.md#your-denoiser). `video` is a block, float32
         (slot, row, col) or (slot, row, col, plane), on the scale 2 sqrt(light), `sigma` the standard deviation
         of its noise, and `step` a DenoiserStep. It is called in this thread. What it raises ends the call.
+    refiner: of learned and learned_fast in place of the network, refiner(inputs), which returns the refined first
+        input, an array (row, col). `inputs` is a plane of a slot, float32 (input, row, col), as
+        decoder/learned/refinement_inputs.h lists them. It is called in this thread for one plane after another.
     threads: 0 means all cores. The values do not depend on it.
     progress: as for `emulate`.
     """
-    task = _stipple.DecodeTask(method, options, fill_gaps, strict, until)
+    called = None if refiner is None else _denoise.refiner_as_called(refiner)
+    task = _stipple.DecodeTask(method, options, fill_gaps, strict, until, called)
     task.calibration = calibration
     _denoise.check_given(method, options, denoiser)
     if denoiser is not None:

@@ -268,7 +268,13 @@ class RegisterChip:
 
 class DecodeTask:
     def __init__(
-        self, method: str, options: Mapping[str, object], fill_gaps: bool, strict: bool, until: Optional[int]
+        self,
+        method: str,
+        options: Mapping[str, object],
+        fill_gaps: bool,
+        strict: bool,
+        until: Optional[int],
+        refiner: Optional[Callable[..., Any]] = None,
     ) -> None: ...
     @property
     def calibration(self) -> Optional[Name]: ...

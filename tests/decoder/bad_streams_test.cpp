@@ -44,6 +44,9 @@ class BadStreamsTest : public testing::TestWithParam<NamedDecodeMethod> {
         options.plug_and_play.denoiser = [](const auto&, bool) -> Denoiser {
             return [](const DenoiserInput& input, FluxVideo& result) { result = input.noisy; };
         };
+        options.learned.refine = [](const RefinerInput& input, std::span<float> refined) {
+            std::ranges::copy(input.inputs.first(refined.size()), refined.begin());
+        };
         options.reddy2011.first_iterations = 10;
         options.reddy2011.rounds = 2;
         options.reddy2011.iterations = 5;

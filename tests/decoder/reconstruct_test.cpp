@@ -69,7 +69,7 @@ TEST(DecodeMethodTest, KnowsItsNames) {
     EXPECT_EQ(decode_method_from_name("naive"), DecodeMethod::kNaive);
     EXPECT_EQ(decode_method_from_name("fast"), DecodeMethod::kFast);
     expect_parts(message_of<InputError>([] { return decode_method_from_name("slow"); }),
-                 {"slow", "naive, live, fast, best, plug_and_play, portz2013"});
+                 {"slow", "naive, live, fast, best, learned_fast, learned, plug_and_play, portz2013"});
 }
 
 TEST_F(ReconstructTest, DeliversEverySlotOfALongClipWithoutSeams) {

@@ -177,8 +177,8 @@ std::vector<std::uint8_t> safetensors_file(const std::string& header,
     return bytes;
 }
 
-std::vector<std::uint8_t> safetensors_file(const Tensors& tensors) {
-    std::string header = R"({"__metadata__":{"format":"pt"})";
+std::vector<std::uint8_t> safetensors_file(const Tensors& tensors, const std::string& inputs) {
+    std::string header = R"({"__metadata__":{"format":"pt","inputs":")" + inputs + "\"}";
     std::vector<std::uint8_t> data;
     for (const auto& [name, tensor] : tensors) {
         std::string shape;

@@ -53,8 +53,9 @@ struct NetworkSize {
 /// All tensors of a RefinementNetwork.
 [[nodiscard]] Tensors random_network(const NetworkSize& size, std::uint32_t seed);
 
-/// A file of the format safetensors, of the type F32.
-[[nodiscard]] std::vector<std::uint8_t> safetensors_file(const Tensors& tensors);
+/// A file of the format safetensors, of the type F32, whose metadata has `inputs`.
+[[nodiscard]] std::vector<std::uint8_t> safetensors_file(const Tensors& tensors,
+                                                         const std::string& inputs = "1");
 
 /// The same of any header and data.
 [[nodiscard]] std::vector<std::uint8_t> safetensors_file(const std::string& header,

@@ -1,0 +1,118 @@
+#include "decoder/learned/learned.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <memory>
+#include <vector>
+
+#include "core/config.h"
+#include "core/error.h"
+#include "core/index.h"
+#include "decoder/learned/refinement_inputs.h"
+#include "decoder/learned/refinement_network.h"
+#include "decoder/measurements.h"
+
+namespace stipple {
+namespace {
+
+constexpr double kFastShare = 0.5;  // of all work; for the progress
+constexpr double kBestShare = 0.85;
+constexpr float kMaxValue = 1e9F;  // its square, light, is far from the largest float
+
+/// \throws InputError as decode_learned, before any work.
+void check(const Measurements& measurements, const Refiner& refine) {
+    if (measurements.mosaic)
+        throw InputError("decoding method",
+                         "learned and learned_fast do not decode mosaics of colours; take best");
+    if (!refine)
+        throw InputError("decoding method", "learned and learned_fast need a file of weights, " +
+                                                Parameter{"decoder.model", "FILE.safetensors"});
+}
+
+struct Estimates {
+    const FluxVideo& start;  ///< may be the other one
+    FluxVideo& refined;      ///< on entry not yet
+};
+
+/// False if `progress` has stopped it.
+bool refine_estimate(const SplittingTask& task, const Estimates& estimates, const Refiner& refine,
+                     const ProgressCallback& progress) {
+    FluxVideo& x = estimates.refined;
+    const RefinementInputs inputs(task.measurements, task.noise, x, estimates.start);
+    const FrameShape shape = x.shape();
+    std::vector<float> seen(kRefinementInputs * shape.pixels());
+    std::vector<float> refined(shape.pixels());
+    FluxVideo result(x.slots(), shape);
+    for (int slot = 0; slot < x.slots(); ++slot) {
+        for (int plane = 0; plane < shape.planes; ++plane) {
+            inputs.write(slot, plane, seen);
+            refine({seen, shape.rows, shape.cols}, refined);
+            if (!std::ranges::all_of(refined, [](float v) { return std::abs(v) <= kMaxValue; }))
+                throw InputError("refiner", fmt::format("its result has a value in slot {} of the "
+                                                        "block that is not finite, or above 1e9",
+                                                        slot));
+            inputs.restore(
+                slot, plane, refined,
+                result.frame(slot).subspan(index(plane) * shape.pixels(), shape.pixels()));
+        }
+        if (!progress(static_cast<double>(slot + 1) / x.slots())) return false;
+    }
+    x = std::move(result);
+    return true;
+}
+
+/// Parts of one progress.
+ProgressCallback part(const ProgressCallback& whole, double begin, double end) {
+    return [&whole, begin, end](double done) { return whole(begin + (end - begin) * done); };
+}
+
+}  // namespace
+
+void read_options(Config& config, LearnedOptions& options) {
+    const KeyReader read(config);
+    read({.name = "model", .text = "safetensors file of other weights of the network"},
+         options.model_file);
+}
+
+Refiner refinement_of(const std::string& file) {
+    const auto network = std::make_shared<const RefinementNetwork>(RefinementNetwork::read(file));
+    const auto& metadata = network->metadata();
+    const auto inputs = metadata.find("inputs");
+    if (network->inputs() != kRefinementInputs || inputs == metadata.end() ||
+        inputs->second != kRefinementInputsName)
+        throw InputError(
+            file, fmt::format("its network has {} inputs of version \"{}\", but this program gives "
+                              "{} of version \"{}\"",
+                              network->inputs(), inputs == metadata.end() ? "" : inputs->second,
+                              kRefinementInputs, kRefinementInputsName));
+    return [network](const RefinerInput& input, std::span<float> refined) {
+        network->refine(input.inputs, input.rows, input.cols, refined);
+    };
+}
+
+std::optional<FluxVideo> decode_learned(const SplittingTask& task,
+                                        const CollaborativeOptions& options,
+                                        const Refiner& refine) {
+    check(task.measurements, refine);
+    FluxVideo start;
+    auto x = decode_collaborative(
+        {task.measurements, task.noise, part(task.progress, 0, kBestShare), &start}, options);
+    if (!x || !refine_estimate(task, {start, *x}, refine, part(task.progress, kBestShare, 1)))
+        return {};
+    return x;
+}
+
+std::optional<FluxVideo> decode_learned_fast(const SplittingTask& task,
+                                             const MotionTvOptions& options,
+                                             const Refiner& refine) {
+    check(task.measurements, refine);
+    auto x = decode_motion_tv(task.measurements, task.noise, options,
+                              part(task.progress, 0, kFastShare));
+    if (!x || !refine_estimate(task, {*x, *x}, refine, part(task.progress, kFastShare, 1)))
+        return {};
+    return x;
+}
+
+}  // namespace stipple

@@ -1,0 +1,179 @@
+#include "decoder/learned/refinement_inputs.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "core/index.h"
+#include "core/parallel.h"
+#include "decoder/measurements.h"
+#include "decoder/pixel_response.h"
+#include "decoder/sampling_operator.h"
+
+namespace stipple {
+namespace {
+
+constexpr float kMinOffset = 0.002F;
+constexpr float kMaxOffset = 1e3F;
+constexpr float kOffsetSlots = 32;
+constexpr float kClip = 2;
+constexpr std::array kSteps{-2, -1, 1, 2};  ///< slots of the neighbours in time
+
+float clipped(float value) {
+    return std::clamp(value, -kClip, kClip);
+}
+
+/// In steps of 2^-20, so that its bits do not hang on a library's logarithm.
+float log2_steps(float value) {
+    return static_cast<float>(std::round(std::log2(static_cast<double>(value)) * 0x1p20) * 0x1p-20);
+}
+
+}  // namespace
+
+RefinementInputs::RefinementInputs(const Measurements& measurements, const SampleNoise& noise,
+                                   const FluxVideo& estimate, const FluxVideo& start)
+    : shape_(estimate.shape()),
+      slots_(estimate.slots()),
+      offset_(
+          std::clamp(noise.variance(0) / noise.per_light() / kOffsetSlots, kMinOffset, kMaxOffset)),
+      noise_input_(clipped(log2_steps(1000 * noise.per_light()) / 4)),
+      dark_input_(clipped(20 * std::sqrt(noise.variance(0)))),
+      estimate_(estimate),
+      start_(start),
+      root_(estimate.voxels()),
+      residual_(estimate.voxels()),
+      length_(estimate.voxels()),
+      bound_(estimate.voxels()) {
+    parallel_for(0, slots_, [&](int slot) {
+        const auto light = estimate.frame(slot);
+        std::ranges::transform(light, &root_[voxel(slot, 0)],
+                               [&](float x) { return std::sqrt(std::max(x, 0.0F) + offset_); });
+    });
+    sample(measurements, estimate.data(), residual_);
+    trace_exposures(measurements);
+    if (std::min(shape_.rows, shape_.cols) >= kMinMotionSide)
+        motion_ = estimate_motion(estimate, {});
+}
+
+/// Of the sums A x in `residual_`.
+void RefinementInputs::trace_exposures(const Measurements& m) {
+    const std::vector<float> ones(m.weight.empty() ? m.voxels() : 0, 1.0F);
+    sample(m, m.weight.empty() ? ones : m.weight, length_);  // A A^T
+    std::vector<float> bounds(m.voxels());
+    const auto for_each_voxel = [&](const auto& body) {
+        parallel_for(0, slots_, [&](int slot) {
+            for (std::size_t i = voxel(slot, 0); i < voxel(slot + 1, 0); ++i) body(i);
+        });
+    };
+    for_each_voxel([&](std::size_t i) {
+        if ((m.state[i] & Measurements::kLast) == 0) return;
+        const bool saturated = (m.state[i] & Measurements::kSaturated) != 0;
+        const float lack = (m.sum[i] - residual_[i]) / length_[i];
+        residual_[i] = saturated ? std::max(lack, 0.0F) : lack;
+        bounds[i] = saturated ? 1.0F : 0.0F;
+    });
+    spread(m, bounds, bounds);
+    spread(m, residual_, residual_);
+    spread(m, length_, length_);
+    for_each_voxel([&](std::size_t i) {
+        bound_[i] = bounds[i] > 0 ? 1 : 0;
+        residual_[i] = clipped(2 * residual_[i] / root_[i]);
+        length_[i] = length_[i] > 0 ? clipped(log2_steps(length_[i]) / 3) : -1;
+    });
+}
+
+std::size_t RefinementInputs::voxel(int slot, int plane) const {
+    return index(slot) * shape_.sites() + index(plane) * shape_.pixels();
+}
+
+/// From a point of `slot` to where it is in slot + step; without confidence beyond the block.
+RefinementInputs::Point RefinementInputs::follow(Point from, int slot, int step) const {
+    if (slot + step < 0 || slot + step >= slots_) return {};
+    if (motion_.empty()) return from;
+    const MotionField& field = motion_[step == motion_[0].step ? 0 : 1];
+    const int row = static_cast<int>(from.row + 0.5F);
+    const int col = static_cast<int>(from.col + 0.5F);
+    const std::size_t i = index(slot) * shape_.pixels() + row_major(row, col, shape_.cols);
+    constexpr float kPixel = 1.0F / MotionField::kShiftsPerPixel;
+    const auto inside = [](float place, int size) {
+        return std::clamp(place, 0.0F, static_cast<float>(size - 1));
+    };
+    return {inside(from.row + kPixel * static_cast<float>(field.row_shift[i]), shape_.rows),
+            inside(from.col + kPixel * static_cast<float>(field.col_shift[i]), shape_.cols),
+            from.confidence * static_cast<float>(field.confidence[i]) / 255};
+}
+
+/// Bilinear.
+float RefinementInputs::root_at(int slot, int plane, const Point& at) const {
+    const int row = std::min(static_cast<int>(at.row), std::max(shape_.rows - 2, 0));
+    const int col = std::min(static_cast<int>(at.col), std::max(shape_.cols - 2, 0));
+    const float* above = &root_[voxel(slot, plane) + row_major(row, col, shape_.cols)];
+    const float* below = above + (shape_.rows > 1 ? shape_.cols : 0);
+    const int right = shape_.cols > 1 ? 1 : 0;
+    const float down = at.row - static_cast<float>(row);
+    const float across = at.col - static_cast<float>(col);
+    const float upper = above[0] + across * (above[right] - above[0]);
+    const float lower = below[0] + across * (below[right] - below[0]);
+    return upper + down * (lower - upper);
+}
+
+void RefinementInputs::write_neighbour(int slot, int plane, int steps, std::span<float> to) const {
+    const int step = steps < 0 ? -1 : 1;
+    const float* own = &root_[voxel(slot, plane)];
+    for (int row = 0; row < shape_.rows; ++row)
+        for (int col = 0; col < shape_.cols; ++col) {
+            Point at{static_cast<float>(row), static_cast<float>(col), 1};
+            for (int k = 0; k != steps && at.confidence > 0; k += step)
+                at = follow(at, slot + k, step);
+            const std::size_t i = row_major(row, col, shape_.cols);
+            to[i] = at.confidence > 0
+                        ? clipped(at.confidence * (root_at(slot + steps, plane, at) - own[i]))
+                        : 0.0F;
+        }
+}
+
+void RefinementInputs::write_exposures(int slot, int plane, std::span<float> inputs) const {
+    const std::size_t pixels = shape_.pixels();
+    const auto copy = [&](const auto& from, int of_slot, int input) {
+        const auto begin = from.begin() + static_cast<std::ptrdiff_t>(voxel(of_slot, plane));
+        std::copy(begin, begin + static_cast<std::ptrdiff_t>(pixels),
+                  inputs.begin() + static_cast<std::ptrdiff_t>(index(input) * pixels));
+    };
+    const int before = std::max(slot - 1, 0), after = std::min(slot + 1, slots_ - 1);
+    copy(residual_, slot, 6);
+    copy(length_, slot, 7);
+    copy(bound_, slot, 8);
+    copy(residual_, before, 9);
+    copy(residual_, after, 10);
+    copy(length_, before, 11);
+    copy(length_, after, 12);
+}
+
+void RefinementInputs::write(int slot, int plane, std::span<float> inputs) const {
+    const std::size_t pixels = shape_.pixels();
+    const auto input = [&](int i) { return inputs.subspan(index(i) * pixels, pixels); };
+    const float* root = &root_[voxel(slot, plane)];
+    const float* started = &start_.data()[voxel(slot, plane)];
+    for (std::size_t i = 0; i < pixels; ++i) {
+        inputs[i] = std::min(root[i], kMaxRoot);
+        input(1)[i] = clipped(std::sqrt(std::max(started[i], 0.0F) + offset_) - root[i]);
+    }
+    parallel_for(0, static_cast<int>(kSteps.size()),
+                 [&](int i) { write_neighbour(slot, plane, kSteps[index(i)], input(2 + i)); });
+    write_exposures(slot, plane, inputs);
+    std::ranges::fill(input(13), noise_input_);
+    std::ranges::fill(input(14), dark_input_);
+}
+
+void RefinementInputs::restore(int slot, int plane, std::span<const float> refined,
+                               std::span<float> light) const {
+    const std::size_t begin = voxel(slot, plane);
+    for (std::size_t i = 0; i < light.size(); ++i) {
+        const float root = root_[begin + i];
+        const float better = std::max(refined[i] + std::max(root - kMaxRoot, 0.0F), 0.0F);
+        light[i] =
+            std::max(estimate_.data()[begin + i] + (better - root) * (better + root), -offset_);
+    }
+}
+
+}  // namespace stipple

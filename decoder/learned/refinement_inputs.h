@@ -1,0 +1,86 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <string_view>
+#include <vector>
+
+#include "core/flux_video.h"
+#include "decoder/motion/motion.h"
+
+namespace stipple {
+
+class SampleNoise;
+struct Measurements;
+
+inline constexpr int kRefinementInputs = 15;
+/// The key `inputs` of a network's metadata, of those that this program computes.
+inline constexpr std::string_view kRefinementInputsName = "1";
+
+/// An estimate of a block in the domain of the refinement network,
+///
+///     v = sqrt(x + offset),   offset = min(max(Var(0) / (32 Var'), 0.002), 1000),
+///
+/// with the variance Var of a sample without light and its increase Var' per light; and what the
+/// network sees of each voxel of a plane:
+///
+///     0       v
+///     1       v of the start estimate - v
+///     2..5    v of the slots t - 2, t - 1, t + 1, t + 2 along motion - v, times the confidence
+///     6       residual q = 2 r / v, with r the share of the voxel in y - A x of its sample
+///             (A^T (A A^T)^-1); 0 without a sample, and where a saturated one has no more light
+///     7       length l = log2(n) / 3 of the exposure, n open slots (weighted: w sum(w^2)); -1
+///             without one
+///     8       1 if its sample is saturated, else 0
+///     9, 10   q of the slots t - 1 and t + 1
+///     11, 12  l of these
+///     13      log2(1000 Var') / 4
+///     14      20 sqrt(Var(0))
+///
+/// At the ends of the block the slot itself takes the place of those that are missing. All values
+/// are clipped to -2..2, but the first to at most `kMaxRoot`.
+class RefinementInputs {
+  public:
+    static constexpr float kMaxRoot = 4;
+
+    /// `start` may be the estimate itself. Precondition: equal shapes; one sensor; `measurements`,
+    /// `estimate` and `start` outlive this.
+    RefinementInputs(const Measurements& measurements, const SampleNoise& noise,
+                     const FluxVideo& estimate, const FluxVideo& start);
+
+    /// Writes the inputs of a plane, order (input, row, col). The same bits for any thread count.
+    void write(int slot, int plane, std::span<float> inputs) const;
+
+    /// The light of the plane whose root the network has changed from v to `refined`: x + refined^2
+    /// - v^2, at least -offset. Beyond kMaxRoot it is the change of the input that is added to v.
+    void restore(int slot, int plane, std::span<const float> refined, std::span<float> light) const;
+
+  private:
+    struct Point {
+        float row, col;
+        float confidence;
+    };
+
+    void trace_exposures(const Measurements& measurements);
+    [[nodiscard]] std::size_t voxel(int slot, int plane) const;
+    [[nodiscard]] Point follow(Point from, int slot, int step) const;
+    [[nodiscard]] float root_at(int slot, int plane, const Point& at) const;
+    void write_neighbour(int slot, int plane, int steps, std::span<float> to) const;
+    void write_exposures(int slot, int plane, std::span<float> inputs) const;
+
+    FrameShape shape_;
+    int slots_;
+    float offset_;
+    float noise_input_;
+    float dark_input_;
+    const FluxVideo& estimate_;
+    const FluxVideo& start_;
+    std::vector<float> root_;          ///< v
+    std::vector<float> residual_;      ///< q, clipped
+    std::vector<float> length_;        ///< l
+    std::vector<std::uint8_t> bound_;  ///< 1 if saturated
+    std::vector<MotionField> motion_;  ///< none if the frame is too small
+};
+
+}  // namespace stipple
