@@ -44,18 +44,8 @@ struct DecodeTask {
     }
 };
 
-void set_refiner(DecodeOptions& options, const py::object& call) {
-    if (options.method != DecodeMethod::kLearned && options.method != DecodeMethod::kLearnedFast)
-        throw InputError("refiner", fmt::format("is for the methods learned and learned_fast, not "
-                                                "for {}",
-                                                named(options.method).name));
-    if (!options.learned.model_file.empty())
-        throw InputError("refiner", "is given twice, as a function and as an option");
-    options.learned.refine = python_refiner(call);
-}
-
 DecodeTask decode_task(const py::object& method, const py::dict& settings, bool fill_gaps,
-                       bool strict, std::optional<std::int64_t> until, const py::object& refiner) {
+                       bool strict, std::optional<std::int64_t> until) {
     if (until && *until < 1) throw InputError("until", fmt::format("{} is not above 0", *until));
     if (!py::isinstance<py::str>(method))
         throw py::type_error(fmt::format("method: {} is not a text", short_text(method)));
@@ -69,10 +59,7 @@ DecodeTask decode_task(const py::object& method, const py::dict& settings, bool 
         throw InputError("options",
                          "hitomi2011 needs {\"dictionary\": FILE}, which a command makes: "
                          "stipple dictionary FOOTAGE -o FILE.npy");
-    if (refiner.is_none())
-        reading(option_file(options), [&] { read_option_file(options); });
-    else
-        set_refiner(options, refiner);
+    reading(option_file(options), [&] { read_option_file(options); });
     options.fill_gaps = fill_gaps;
     return task;
 }
@@ -85,6 +72,17 @@ void set_denoiser(DecodeTask& task, const py::object& call) {
     if (options.plug_and_play.denoiser)
         throw InputError("denoiser", "is given twice, as a function and as an option");
     options.plug_and_play.denoiser = python_denoiser(call);
+}
+
+void set_refiner(DecodeTask& task, const py::object& call) {
+    DecodeOptions& options = task.setup.options;
+    if (options.method != DecodeMethod::kLearned && options.method != DecodeMethod::kLearnedFast)
+        throw InputError("refiner", fmt::format("is for the methods learned and learned_fast, not "
+                                                "for {}",
+                                                named(options.method).name));
+    if (!options.learned.model_file.empty())
+        throw InputError("refiner", "is given twice, as a function and as an option");
+    options.learned.refine = python_refiner(call);
 }
 
 /// What the user should know of a stream that was decoded to its end, or to `until`.
@@ -187,10 +185,10 @@ std::string decoding_identity(const std::filesystem::path& stream, const DecodeT
 
 void bind_decode(py::module_& module) {
     py::class_<DecodeTask>(module, "DecodeTask")
-        .def(py::init(&decode_task), py::arg("method"), py::arg("options"), py::arg("fill_gaps"),
-             py::arg("strict"), py::arg("until"), py::arg("refiner") = py::none())
+        .def(py::init(&decode_task))
         .def_readwrite("calibration", &DecodeTask::calibration)
         .def("set_denoiser", &set_denoiser)
+        .def("set_refiner", &set_refiner)
         .def("begin_at_block", [](DecodeTask& task, std::int64_t number) {
             task.setup.options.first_slot = block_begin(number);
         });

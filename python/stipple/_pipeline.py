@@ -237,12 +237,13 @@ def decode(
     threads: 0 means all cores. The values do not depend on it.
     progress: as for `emulate`.
     """
-    called = None if refiner is None else _denoise.refiner_as_called(refiner)
-    task = _stipple.DecodeTask(method, options, fill_gaps, strict, until, called)
+    task = _stipple.DecodeTask(method, options, fill_gaps, strict, until)
     task.calibration = calibration
     _denoise.check_given(method, options, denoiser)
     if denoiser is not None:
         task.set_denoiser(_denoise.as_called(denoiser))
+    if refiner is not None:
+        task.set_refiner(_denoise.refiner_as_called(refiner))
     with _stipple.Threads(threads):
         is_path = isinstance(stream, (str, PathLike)) and not isinstance(stream, Stream)
         if is_path and _stipple.is_rig_folder(stream):

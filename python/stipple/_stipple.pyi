@@ -268,13 +268,7 @@ class RegisterChip:
 
 class DecodeTask:
     def __init__(
-        self,
-        method: str,
-        options: Mapping[str, object],
-        fill_gaps: bool,
-        strict: bool,
-        until: Optional[int],
-        refiner: Optional[Callable[..., Any]] = None,
+        self, method: str, options: Mapping[str, object], fill_gaps: bool, strict: bool, until: Optional[int]
     ) -> None: ...
     @property
     def calibration(self) -> Optional[Name]: ...
@@ -282,6 +276,7 @@ class DecodeTask:
     def calibration(self, file: Optional[Name]) -> None: ...
     def begin_at_block(self, number: int) -> None: ...
     def set_denoiser(self, call: Callable[..., Any]) -> None: ...
+    def set_refiner(self, call: Callable[..., Any]) -> None: ...
 
 class ForwardModel:
     @staticmethod

@@ -47,7 +47,6 @@ class RefinerTest(unittest.TestCase):
         self.fails(["refiner: ", "slot 0", "finite"], refiner=lambda inputs: inputs[0] * np.nan)
         self.fails(["mine"], error=KeyError, refiner=lambda inputs: {}["mine"])
         self.fails(["refiner: is for the methods learned"], method="best", refiner=keep)
-        self.fails(["refiner: is given twice"], options={"model": "net.safetensors"}, refiner=keep)
 
     def test_weights_that_are_not_there_are_named(self):
         self.fails(["nosuch.safetensors: there is no such network"], options={"model": "nosuch.safetensors"},
