@@ -35,7 +35,8 @@ TEST(SafetensorsTest, ReadsSinglePrecision) {
         EXPECT_EQ(file.tensors.at(name).shape, tensor.shape);
         EXPECT_EQ(file.tensors.at(name).values, tensor.values);
     }
-    EXPECT_EQ(file.metadata, (std::map<std::string, std::string>{{"format", "pt"}}));
+    EXPECT_EQ(file.metadata,
+              (std::map<std::string, std::string>{{"format", "pt"}, {"inputs", "1"}}));
 }
 
 /// IEEE 754-2008, binary16: the smallest subnormal and normal, the largest of both, 1/3, 1, -2.
