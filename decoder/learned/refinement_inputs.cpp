@@ -7,6 +7,7 @@
 #include "core/index.h"
 #include "core/parallel.h"
 #include "decoder/measurements.h"
+#include "decoder/motion/bilinear.h"
 #include "decoder/pixel_response.h"
 #include "decoder/sampling_operator.h"
 
@@ -103,32 +104,22 @@ RefinementInputs::Point RefinementInputs::follow(Point from, int slot, int step)
             from.confidence * static_cast<float>(field.confidence[i]) / 255};
 }
 
-/// Bilinear.
-float RefinementInputs::root_at(int slot, int plane, const Point& at) const {
-    const int row = std::min(static_cast<int>(at.row), std::max(shape_.rows - 2, 0));
-    const int col = std::min(static_cast<int>(at.col), std::max(shape_.cols - 2, 0));
-    const float* above = &root_[voxel(slot, plane) + row_major(row, col, shape_.cols)];
-    const float* below = above + (shape_.rows > 1 ? shape_.cols : 0);
-    const int right = shape_.cols > 1 ? 1 : 0;
-    const float down = at.row - static_cast<float>(row);
-    const float across = at.col - static_cast<float>(col);
-    const float upper = above[0] + across * (above[right] - above[0]);
-    const float lower = below[0] + across * (below[right] - below[0]);
-    return upper + down * (lower - upper);
-}
-
 void RefinementInputs::write_neighbour(int slot, int plane, int steps, std::span<float> to) const {
     const int step = steps < 0 ? -1 : 1;
-    const float* own = &root_[voxel(slot, plane)];
+    const auto roots = [&](int of_slot) {
+        return PlaneView<const float>(&root_[voxel(of_slot, plane)], shape_.rows, shape_.cols);
+    };
+    const PlaneView<const float> own = roots(slot);
     for (int row = 0; row < shape_.rows; ++row)
         for (int col = 0; col < shape_.cols; ++col) {
             Point at{static_cast<float>(row), static_cast<float>(col), 1};
             for (int k = 0; k != steps && at.confidence > 0; k += step)
                 at = follow(at, slot + k, step);
-            const std::size_t i = row_major(row, col, shape_.cols);
-            to[i] = at.confidence > 0
-                        ? clipped(at.confidence * (root_at(slot + steps, plane, at) - own[i]))
-                        : 0.0F;
+            to[row_major(row, col, shape_.cols)] =
+                at.confidence > 0
+                    ? clipped(at.confidence *
+                              (bilinear(roots(slot + steps), at.row, at.col) - own(row, col)))
+                    : 0.0F;
         }
 }
 

@@ -65,7 +65,6 @@ class RefinementInputs {
     void trace_exposures(const Measurements& measurements);
     [[nodiscard]] std::size_t voxel(int slot, int plane) const;
     [[nodiscard]] Point follow(Point from, int slot, int step) const;
-    [[nodiscard]] float root_at(int slot, int plane, const Point& at) const;
     void write_neighbour(int slot, int plane, int steps, std::span<float> to) const;
     void write_exposures(int slot, int plane, std::span<float> inputs) const;
 

@@ -10,6 +10,7 @@
 #include "core/index.h"
 #include "core/parallel.h"
 #include "core/plane.h"
+#include "decoder/motion/bilinear.h"
 #include "decoder/motion/motion.h"
 
 namespace stipple {
@@ -26,21 +27,6 @@ struct Shift {
     float rows = 0;
     float cols = 0;
 };
-
-/// Bilinear; what lies outside is that of the rim.
-float light_at(PlaneView<const float> plane, float row, float col) {
-    row = std::clamp(row, 0.0F, static_cast<float>(plane.rows() - 1));
-    col = std::clamp(col, 0.0F, static_cast<float>(plane.cols() - 1));
-    const int top = static_cast<int>(row);
-    const int left = static_cast<int>(col);
-    const int bottom = std::min(top + 1, plane.rows() - 1);
-    const int right = std::min(left + 1, plane.cols() - 1);
-    const float down = row - static_cast<float>(top);
-    const float across = col - static_cast<float>(left);
-    const float above = plane(top, left) + across * (plane(top, right) - plane(top, left));
-    const float below = plane(bottom, left) + across * (plane(bottom, right) - plane(bottom, left));
-    return above + down * (below - above);
-}
 
 /// out[i] = mean of the values at i - kRadius .. i + kRadius that there are.
 void mean_along(std::size_t count, std::size_t stride, const float* in, float* out) {
@@ -130,8 +116,8 @@ class Between {
         const auto y = static_cast<float>(row);
         const auto x = static_cast<float>(col);
         const float rest = 1 - share_;
-        return {light_at(before, y - share_ * shift.rows, x - share_ * shift.cols),
-                light_at(after, y + rest * shift.rows, x + rest * shift.cols)};
+        return {bilinear(before, y - share_ * shift.rows, x - share_ * shift.cols),
+                bilinear(after, y + rest * shift.rows, x + rest * shift.cols)};
     }
 
     /// Each pixel takes its candidate if the frames differ less along it.

@@ -10,6 +10,15 @@
 
 namespace stipple {
 
+FluxVideo moving_bar(FrameShape shape) {
+    FluxVideo video(16, shape);
+    for (int slot = 0; slot < video.slots(); ++slot)
+        for (int row = 0; row < shape.rows; ++row)
+            for (int col = 0; col < shape.cols; ++col)
+                video.plane(slot, 0)(row, col) = (col - slot + 32) % 16 < 6 ? 0.8F : 0.2F;
+    return video;
+}
+
 const SampleNoise& paper_noise() {
     static const SampleNoise noise(calibration_of({}));
     return noise;

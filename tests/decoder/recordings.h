@@ -24,6 +24,9 @@ struct VideoWindow;
 /// Light that is everywhere the same.
 [[nodiscard]] FluxVideo flat_video(int slots, FrameShape shape, float light);
 
+/// 16 slots in which bars of light 0.8 on 0.2 move a pixel a slot. Precondition: one plane.
+[[nodiscard]] FluxVideo moving_bar(FrameShape shape);
+
 /// The noise of the sensor `paper`.
 [[nodiscard]] const SampleNoise& paper_noise();
 

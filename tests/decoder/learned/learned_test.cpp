@@ -25,18 +25,9 @@ constexpr FrameShape kShape{.rows = 24, .cols = 28, .planes = 1};
 const CollaborativeOptions kShort{.iterations = 4};
 const float kOffset = paper_noise().variance(0) / paper_noise().per_light() / 32;
 
-/// A bar that moves a pixel a slot.
-FluxVideo moving() {
-    FluxVideo video(16, kShape);
-    for (int slot = 0; slot < video.slots(); ++slot)
-        for (int row = 0; row < kShape.rows; ++row)
-            for (int col = 0; col < kShape.cols; ++col)
-                video.plane(slot, 0)(row, col) = (col - slot + 32) % 16 < 6 ? 0.8F : 0.2F;
-    return video;
-}
-
 Measurements samples() {
-    return measure(moving(), random_schedule(kShape.rows, kShape.cols, kPaperExposureSlots, 1));
+    return measure(moving_bar(kShape),
+                   random_schedule(kShape.rows, kShape.cols, kPaperExposureSlots, 1));
 }
 
 const ProgressCallback kGoOn = [](double) { return true; };
@@ -87,7 +78,7 @@ TEST(LearnedTest, TheStartIsTheEstimateOfFast) {
 }
 
 TEST(LearnedTest, ARefinerThatKnowsTheTruthGivesItBack) {
-    const FluxVideo truth = moving();
+    const FluxVideo truth = moving_bar(kShape);
     for (const auto& decode : {learned, learned_fast}) {
         int slot = 0;
         expect_near(decode([&](const RefinerInput&, std::span<float> refined) {

@@ -22,18 +22,9 @@ namespace {
 constexpr FrameShape kShape{.rows = 24, .cols = 28, .planes = 1};
 const CollaborativeOptions kShort{.iterations = 4, .light_offset = 0.5F};
 
-/// A bar that moves a pixel a slot.
-FluxVideo moving() {
-    FluxVideo video(16, kShape);
-    for (int slot = 0; slot < video.slots(); ++slot)
-        for (int row = 0; row < kShape.rows; ++row)
-            for (int col = 0; col < kShape.cols; ++col)
-                video.plane(slot, 0)(row, col) = (col - slot + 32) % 16 < 6 ? 0.8F : 0.2F;
-    return video;
-}
-
 Measurements samples() {
-    return measure(moving(), random_schedule(kShape.rows, kShape.cols, kPaperExposureSlots, 1));
+    return measure(moving_bar(kShape),
+                   random_schedule(kShape.rows, kShape.cols, kPaperExposureSlots, 1));
 }
 
 FluxVideo decoded(const Denoiser& denoiser) {
@@ -51,7 +42,7 @@ TEST(PlugAndPlayTest, WithTheFilterOfBestItHasItsBits) {
 }
 
 TEST(PlugAndPlayTest, ADenoiserThatKnowsTheTruthGivesItBack) {
-    const FluxVideo truth = moving();
+    const FluxVideo truth = moving_bar(kShape);
     int calls = 0;
     const FluxVideo result = decoded([&](const DenoiserInput& input, FluxVideo& clean) {
         EXPECT_EQ(input.iteration, calls++);
