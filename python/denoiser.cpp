@@ -16,6 +16,7 @@
 #include "decoder/best/patch_matching.h"
 #include "python/bindings.h"
 #include "python/footage.h"
+#include "python/with_gil.h"
 
 namespace stipple::python {
 namespace {
@@ -34,15 +35,6 @@ FluxVideo video_of(const Array& array) {
     FluxVideo video(size(0), {.rows = size(2), .cols = size(3), .planes = size(1)});
     std::copy_n(array.data(), video.voxels(), video.data().begin());
     return video;
-}
-
-/// Python objects are deleted with the GIL.
-template <typename Held>
-std::shared_ptr<Held> with_gil(Held* held) {
-    return {held, [](Held* last) {
-                const py::gil_scoped_acquire gil;
-                delete last;
-            }};
 }
 
 /// What lasts as long as a block.

@@ -5,11 +5,11 @@
 #include <pybind11/stl/filesystem.h>
 
 #include <algorithm>
-#include <memory>
 #include <utility>
 
 #include "core/error.h"
 #include "python/bindings.h"
+#include "python/with_gil.h"
 
 namespace stipple::python {
 namespace {
@@ -58,10 +58,7 @@ void DecoderRaised::raise(const std::string& where) {
 
 OwnDecoder own_decoder(const std::string& name, const std::string& version,
                        const py::object& decode) {
-    const std::shared_ptr<py::object> function(new py::object(decode), [](py::object* object) {
-        const py::gil_scoped_acquire gil;
-        delete object;
-    });
+    const auto function = with_gil(new py::object(decode));
     const auto call = [function, name](const std::filesystem::path& stream,
                                        const std::string& options) {
         const py::gil_scoped_acquire gil;

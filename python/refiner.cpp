@@ -3,21 +3,16 @@
 #include <pybind11/numpy.h>
 
 #include <algorithm>
-#include <memory>
-#include <vector>
 
 #include "core/error.h"
 #include "decoder/learned/refinement_inputs.h"
+#include "python/with_gil.h"
 
 namespace stipple::python {
 namespace py = pybind11;
 
 Refiner python_refiner(const py::object& call) {
-    // Deleted with the GIL.
-    const std::shared_ptr<py::object> held(new py::object(call), [](py::object* last) {
-        const py::gil_scoped_acquire gil;
-        delete last;
-    });
+    const auto held = with_gil(new py::object(call));
     return [held](const RefinerInput& input, std::span<float> refined) {
         const py::gil_scoped_acquire gil;
         py::array_t<float> inputs({kRefinementInputs, input.rows, input.cols});
