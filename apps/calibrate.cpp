@@ -115,16 +115,8 @@ void calibrate(const CalibrateOptions& options, const RunOptions& run) {
     PendingOutput output(options.output, run.force);
     say_leftover(options.output);
     if (!options.scene.stream.empty()) return write_scene_gains(options, run, json, output);
-    const CalibrationFields fields = read_fields(options.series, run);
-    ChipEstimate estimate = estimate_chip({.header = fields.header,
-                                           .dark = fields.dark,
-                                           .flats = fields.flats,
-                                           .levels = fields.levels,
-                                           .dark_name = fields.dark_name,
-                                           .flat_name = fields.flat_name,
-                                           .well_known = fields.well_known,
-                                           .dark_current = !options.no_dark_current});
-    estimate.calibration.chip = fields.chip;
+    const ChipEstimate estimate =
+        estimate_series(read_fields(options.series, run), !options.no_dark_current);
     write(output, estimate.calibration);
     const ChipFigures figures = chip_figures(estimate.calibration);
     json.write(json_of(estimate, figures));

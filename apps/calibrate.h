@@ -7,11 +7,9 @@
 #include "apps/arguments/run_options.h"
 #include "apps/arguments/sensor.h"
 #include "calibration/chip_calibration.h"
-#include "calibration/field_samples.h"
-#include "calibration/response_fit.h"
 #include "core/geometry.h"
 #include "readout/flat_field.h"
-#include "stream/stream_header.h"
+#include "study/calibration/field_series.h"
 
 namespace stipple {
 
@@ -40,25 +38,12 @@ struct SeriesArguments {
     std::vector<std::string> flat;
 };
 
-/// The samples for a calibration, and of which chip they are.
-struct CalibrationFields {
-    StreamHeader header;
-    FieldSamples dark;
-    std::vector<FieldSamples> flats;
-    std::vector<ResponseLevel> levels = {};  ///< empty: as those of `flats`
-    std::string dark_name;
-    std::string flat_name;
-    ChipIdentity chip = {};
-    bool well_known = true;
-};
-
 void add_series_arguments(Command& command, SeriesArguments& arguments);
 
 /// \throws UsageError for options of another source, or without what this one needs.
 void check_series(const Command& command, const SeriesArguments& arguments);
 
 /// \throws InputError as the readers of streams and images, and of a sensor; Interrupted.
-[[nodiscard]] CalibrationFields read_fields(const SeriesArguments& arguments,
-                                            const RunOptions& run);
+[[nodiscard]] FieldSeries read_fields(const SeriesArguments& arguments, const RunOptions& run);
 
 }  // namespace stipple

@@ -20,11 +20,13 @@
 #include "python/bindings.h"
 #include "python/call_progress.h"
 #include "python/errors.h"
-#include "python/field_series.h"
 #include "python/footage.h"
+#include "python/sensor.h"
+#include "readout/flat_field.h"
 #include "readout/provenance.h"
 #include "stream/stream_figures.h"
 #include "stream/stream_reader.h"
+#include "study/calibration/field_series.h"
 
 namespace stipple::python {
 namespace fs = std::filesystem;
@@ -60,6 +62,36 @@ py::dict figures_of(const ChipEstimate& estimate) {
         "response"_a = response_dict(estimate.response), "defects"_a = figures.defects);
 }
 
+/// The number `name`. \throws InputError if it is outside [min, max].
+int number_in(const py::dict& numbers, const char* name, std::uint64_t min, std::uint64_t max) {
+    const std::uint64_t number = whole_in(numbers[name], name);
+    if (number < min || number > max)
+        throw InputError(name, fmt::format("{} is outside {}..{}", number, min, max));
+    return static_cast<int>(number);
+}
+
+/// "size" and "planes". \throws InputError for what `stipple calibrate` refuses.
+FrameShape shape_in(const py::dict& numbers) {
+    const auto [rows, cols] = size_in(numbers["size"], "size");
+    if (rows < 1 || cols < 1 || rows > kMaxFrameSide || cols > kMaxFrameSide)
+        throw InputError(
+            "size", fmt::format("({}, {}) is outside 1..{}, for both", rows, cols, kMaxFrameSide));
+    return {.rows = static_cast<int>(rows),
+            .cols = static_cast<int>(cols),
+            .planes = number_in(numbers, "planes", 1, 4)};
+}
+
+/// "flats", "darks" and "levels", likewise.
+CalibrationImages images_in(const py::dict& numbers, const SensorParams& params) {
+    return {.darks = number_in(numbers, "darks", 1, 65535),
+            .flats = number_in(numbers, "flats", 1, 65535),
+            .levels = numbers["levels"].is_none() ? default_levels(params)
+                                                  : number_in(numbers, "levels", 0, 1000)};
+}
+
+/// Thrown out of a calibration that Python ends.
+struct CalibrationEnded {};
+
 /// A calibration that goes to a file.
 class CalibrationTask {
   public:
@@ -68,20 +100,25 @@ class CalibrationTask {
           dark_current_(dark_current) {}
 
     py::dict of_sensor(const py::object& sensor, const py::dict& numbers, const py::object& tell) {
-        const EmulatedSeries series = emulated_series(sensor, numbers);
-        const auto exposures =
-            calibration_exposures(series.sensor.description.params, series.images, series.seed);
+        const ChosenSensor chosen = sensor_of(sensor);
+        const SensorParams& params = chosen.description.params;
+        const EmulatedSeries series{.params = params,
+                                    .shape = shape_in(numbers),
+                                    .sensor = chosen.choice.sensor,
+                                    .size_where = "size"};
+        const auto exposures = calibration_exposures(params, images_in(numbers, params),
+                                                     whole_in(numbers["seed"], "seed"));
         std::int64_t images = 0;
         for (const CalibrationExposure& exposure : exposures) images += exposure.images;
-        return run(tell, images, [&](CallProgress& progress) {
-            return expose_series(series, exposures, progress);
+        return run(tell, {images}, [&](const SeriesObserver& observer) {
+            return expose_series(series, exposures, observer);
         });
     }
 
     py::dict of_images(const fs::path& descriptor, const py::object& tell) {
         return reading(descriptor, [&] {
-            return run(tell, std::nullopt, [&](CallProgress& progress) {
-                return read_image_series(descriptor, progress);
+            return run(tell, {}, [&](const SeriesObserver& observer) {
+                return read_image_series(descriptor, observer);
             });
         });
     }
@@ -90,8 +127,8 @@ class CalibrationTask {
         for (const Files& files : {dark, flat})
             for (const fs::path& file : files)
                 reading(file, [&] { return StreamReader(file).slots(); });
-        return run(tell, std::nullopt, [&](CallProgress& progress) {
-            return read_field_streams(dark, flat, progress);
+        return run(tell, {.step = 0}, [&](const SeriesObserver& observer) {
+            return read_field_streams(dark, flat, observer);
         });
     }
 
@@ -128,29 +165,33 @@ class CalibrationTask {
     }
 
   private:
+    /// How a series counts for the progress.
+    struct Images {
+        std::optional<std::int64_t> count = {};  ///< none: unknown
+        double step = 1;                         ///< of an image or packet
+    };
+
     /// Of the fields that `take` gives, without the GIL.
     template <typename Take>
-    py::dict run(const py::object& tell, std::optional<std::int64_t> images, const Take& take) {
-        CallProgress progress(tell, images);
+    py::dict run(const py::object& tell, const Images& images, const Take& take) {
+        CallProgress progress(tell, images.count);
         std::optional<ChipEstimate> estimate;
-        std::vector<Message> warnings;
+        std::vector<std::string> warnings;
+        double done = 0;
+        const SeriesObserver observer{
+            .advance =
+                [&] {
+                    done += images.step;
+                    if (!progress.reach(done)) throw CalibrationEnded{};
+                },
+            .warn = [&](const std::string& text) { warnings.push_back(text); }};
         try {
             const py::gil_scoped_release released;
-            const FieldSeries fields = take(progress);
-            estimate = estimate_chip({.header = fields.header,
-                                      .dark = fields.dark,
-                                      .flats = fields.flats,
-                                      .levels = fields.levels,
-                                      .dark_name = fields.dark_name,
-                                      .flat_name = fields.flat_name,
-                                      .well_known = fields.well_known,
-                                      .dark_current = dark_current_});
-            estimate->calibration.chip = fields.chip;
-            warnings = fields.warnings;
+            estimate = estimate_series(take(observer), dark_current_);
         } catch (const CalibrationEnded&) {  // `finish` raises why
         }
         progress.finish();
-        for (const Message& text : warnings) warn(text);
+        for (const std::string& text : warnings) warn(text);
         write(estimate.value().calibration);
         return figures_of(*estimate);
     }

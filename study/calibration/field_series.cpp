@@ -1,23 +1,21 @@
-#include "python/field_series.h"
+#include "study/calibration/field_series.h"
 
 #include <fmt/format.h>
-#include <pybind11/pybind11.h>
 
 #include <utility>
 
 #include "calibration/chip_exposures.h"
 #include "core/error.h"
+#include "core/index.h"
 #include "core/input_file.h"
 #include "core/memory_limit.h"
 #include "io/image_file.h"
-#include "python/errors.h"
 #include "readout/provenance.h"
 #include "stream/stream_figures.h"
 #include "stream/stream_reader.h"
 #include "study/metrics/emva1288/series_evaluation.h"
 
-namespace stipple::python {
-namespace py = pybind11;
+namespace stipple {
 namespace fs = std::filesystem;
 namespace {
 
@@ -25,7 +23,7 @@ using emva1288::ImageGroup;
 using emva1288::Series;
 
 /// Sums of the samples of some exposure times, and maps of an array.
-void require_memory(FrameShape shape, std::size_t times, const std::string& where) {
+void require_memory(FrameShape shape, std::size_t times, std::string_view where) {
     constexpr std::uint64_t kMapBytes = 160, kTimeBytes = 20;  // of a site
     check_memory(shape.sites() * (kMapBytes + times * kTimeBytes), where,
                  fmt::format("the calibration of {} x {} pixels", shape.cols, shape.rows));
@@ -49,8 +47,8 @@ StreamHeader header_of(const Series& series, double exposure_ns) {
 /// Images of a camera that a descriptor lists.
 class ImageSeries {
   public:
-    ImageSeries(const fs::path& descriptor, CallProgress& progress)
-        : descriptor_(descriptor), progress_(progress) {
+    ImageSeries(const fs::path& descriptor, const SeriesObserver& observer)
+        : descriptor_(descriptor), observer_(observer) {
         const auto bytes = read_file(descriptor);
         series_ = emva1288::parse_series(
             {reinterpret_cast<const char*>(bytes.data()), bytes.size()}, descriptor.string());
@@ -87,7 +85,7 @@ class ImageSeries {
             emva1288::SeriesImage dn{image.shape.rows, image.shape.cols, std::move(image.dn)};
             emva1288::require_image_of(series_, dn, file.string());
             collector.add({.rows = dn.rows, .dn = std::move(dn.dn)});
-            if (!progress_.reach(++done_)) throw CalibrationEnded{};
+            observer_.advance();
         }
     }
 
@@ -120,14 +118,13 @@ class ImageSeries {
     }
 
     fs::path descriptor_;
-    CallProgress& progress_;
+    const SeriesObserver& observer_;
     Series series_;
-    double done_ = 0;
 };
 
 /// Adds the samples of a stream of a chip.
 void add_stream(const fs::path& file, FieldSeries& fields, FieldSamples& field,
-                CallProgress& progress) {
+                const SeriesObserver& observer) {
     StreamReader reader(file);
     const StreamHeader& header = reader.header();
     if (header.shape != fields.header.shape || header.cfa != fields.header.cfa ||
@@ -138,47 +135,26 @@ void add_stream(const fs::path& file, FieldSeries& fields, FieldSamples& field,
     FieldCollector collector(header, field);
     for (SamplePacket packet; reader.next(packet);) {
         collector.add(packet);
-        if (!progress.reach(0)) throw CalibrationEnded{};
+        observer.advance();
     }
     if (!undamaged(reader.report()))
-        fields.warnings.emplace_back(
-            fmt::format("{}: {}", file.string(), damage_text(reader.report())));
+        observer.warn(fmt::format("{}: {}", file.string(), damage_text(reader.report())));
 }
 
 }  // namespace
 
-EmulatedSeries emulated_series(const py::object& sensor, const py::dict& numbers) {
-    const auto take = [&](const char* name, std::uint64_t min, std::uint64_t max) {
-        const std::uint64_t number = whole_in(numbers[name], name);
-        if (number < min || number > max)
-            throw InputError(name, fmt::format("{} is outside {}..{}", number, min, max));
-        return static_cast<int>(number);
-    };
-    EmulatedSeries series{.sensor = sensor_of(sensor), .shape = {}, .images = {}};
-    const auto [rows, cols] = size_in(numbers["size"], "size");
-    if (rows < 1 || cols < 1 || rows > kMaxFrameSide || cols > kMaxFrameSide)
-        throw InputError(
-            "size", fmt::format("({}, {}) is outside 1..{}, for both", rows, cols, kMaxFrameSide));
-    series.shape = {.rows = static_cast<int>(rows),
-                    .cols = static_cast<int>(cols),
-                    .planes = take("planes", 1, 4)};
-    series.images.flats = take("flats", 1, 65535);
-    series.images.darks = take("darks", 1, 65535);
-    const PhysicalTerms& terms = series.sensor.description.params.physical;
-    if (!numbers["levels"].is_none())
-        series.images.levels = take("levels", 0, 1000);
-    else if (terms.response_loss != 0 || terms.inl_dn != 0)
-        series.images.levels = 12;
-    series.seed = whole_in(numbers["seed"], "seed");
-    return series;
+int default_levels(const SensorParams& params) {
+    constexpr int kLevels = 12;
+    const PhysicalTerms& terms = params.physical;
+    return terms.response_loss != 0 || terms.inl_dn != 0 ? kLevels : 0;
 }
 
 FieldSeries expose_series(const EmulatedSeries& series,
                           const std::vector<CalibrationExposure>& exposures,
-                          CallProgress& progress) {
-    const SensorParams& params = series.sensor.description.params;
-    require_memory(series.shape, 3 + static_cast<std::size_t>(series.images.levels), "size");
-    const std::string where = fmt::format("sensor \"{}\"", series.sensor.choice.sensor);
+                          const SeriesObserver& observer) {
+    const SensorParams& params = series.params;
+    require_memory(series.shape, exposures.size(), series.size_where);
+    const std::string where = fmt::format("sensor \"{}\"", series.sensor);
     FieldSeries fields{.header = FlatField(params, 0, series.shape).header(),
                        .dark = FieldSamples(series.shape),
                        .flats = {FieldSamples(series.shape)},
@@ -186,7 +162,6 @@ FieldSeries expose_series(const EmulatedSeries& series,
                        .flat_name = where};
     if (params.name.size() <= kMaxNameBytes) fields.chip.name = params.name;
     if (params.mode == SensorMode::kPhysical) fields.chip.device_id = params.physical.device_id;
-    double done = 0;
     for (const CalibrationExposure& exposure : exposures) {
         SensorParams timed = params;
         timed.slot_us = exposure.slot_us;
@@ -195,18 +170,18 @@ FieldSeries expose_series(const EmulatedSeries& series,
                                  exposure.photons > 0 ? fields.flats.front() : fields.dark);
         for (int i = 0; i < exposure.images; ++i) {
             collector.add(field.expose(exposure.photons));
-            if (!progress.reach(++done)) throw CalibrationEnded{};
+            observer.advance();
         }
     }
     return fields;
 }
 
-FieldSeries read_image_series(const fs::path& descriptor, CallProgress& progress) {
-    return ImageSeries(descriptor, progress).read();
+FieldSeries read_image_series(const fs::path& descriptor, const SeriesObserver& observer) {
+    return ImageSeries(descriptor, observer).read();
 }
 
 FieldSeries read_field_streams(const std::vector<fs::path>& dark, const std::vector<fs::path>& flat,
-                               CallProgress& progress) {
+                               const SeriesObserver& observer) {
     const StreamReader first(dark.front());
     const StreamHeader& header = first.header();
     require_memory(header.shape, 4 * (1 + flat.size()), dark.front().string());
@@ -218,13 +193,26 @@ FieldSeries read_field_streams(const std::vector<fs::path>& dark, const std::vec
     const ChipOrigin chip = chip_of(header.provenance);
     if (chip.name.size() <= kMaxNameBytes) fields.chip.name = chip.name;
     fields.chip.device_id = chip.device_id;
-    for (const fs::path& file : dark) add_stream(file, fields, fields.dark, progress);
+    for (const fs::path& file : dark) add_stream(file, fields, fields.dark, observer);
     for (const fs::path& file : flat) {
         fields.flats.emplace_back(header.shape);
-        add_stream(file, fields, fields.flats.back(), progress);
+        add_stream(file, fields, fields.flats.back(), observer);
         require_samples({&fields.flats.back(), 1}, file.string());
     }
     return fields;
 }
 
-}  // namespace stipple::python
+ChipEstimate estimate_series(const FieldSeries& series, bool dark_current) {
+    ChipEstimate estimate = estimate_chip({.header = series.header,
+                                           .dark = series.dark,
+                                           .flats = series.flats,
+                                           .levels = series.levels,
+                                           .dark_name = series.dark_name,
+                                           .flat_name = series.flat_name,
+                                           .well_known = series.well_known,
+                                           .dark_current = dark_current});
+    estimate.calibration.chip = series.chip;
+    return estimate;
+}
+
+}  // namespace stipple
