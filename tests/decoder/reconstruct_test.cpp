@@ -68,8 +68,9 @@ class ReconstructTest : public testing::Test {
 TEST(DecodeMethodTest, KnowsItsNames) {
     EXPECT_EQ(decode_method_from_name("naive"), DecodeMethod::kNaive);
     EXPECT_EQ(decode_method_from_name("fast"), DecodeMethod::kFast);
-    expect_parts(message_of<InputError>([] { return decode_method_from_name("slow"); }),
-                 {"slow", "naive, live, fast, best, learned_fast, learned, plug_and_play, portz2013"});
+    expect_parts(
+        message_of<InputError>([] { return decode_method_from_name("slow"); }),
+        {"slow", "naive, live, fast, best, learned_fast, learned, plug_and_play, portz2013"});
 }
 
 TEST_F(ReconstructTest, DeliversEverySlotOfALongClipWithoutSeams) {
