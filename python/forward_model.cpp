@@ -6,7 +6,8 @@
 
 #include <algorithm>
 #include <array>
-#include <cmath>
+#include <atomic>
+#include <limits>
 #include <memory>
 #include <optional>
 #include <span>
@@ -16,6 +17,7 @@
 #include "core/error.h"
 #include "core/index.h"
 #include "core/memory_limit.h"
+#include "core/parallel.h"
 #include "decoder/data_prox.h"
 #include "python/bindings.h"
 #include "python/schedule.h"
@@ -81,6 +83,21 @@ std::vector<py::ssize_t> dimensions(const ForwardModel& model) {
     return {model.slots(), shape.planes, shape.rows, shape.cols};
 }
 
+/// No value is below `min`, infinite or NaN. Without an early end, which would keep it from vector
+/// instructions.
+bool are_finite(std::span<const float> values, float min = std::numeric_limits<float>::lowest()) {
+    constexpr std::size_t kPart = 65536;
+    std::atomic<bool> right = true;
+    parallel_for(0, static_cast<int>((values.size() + kPart - 1) / kPart), [&](int part) {
+        const std::size_t begin = index(part) * kPart;
+        unsigned wrong = 0;
+        for (const float value : values.subspan(begin, std::min(kPart, values.size() - begin)))
+            wrong |= value >= min && value <= std::numeric_limits<float>::max() ? 0U : 1U;
+        if (wrong != 0) right = false;
+    });
+    return right;
+}
+
 /// The values of an array of the shape of the model.
 std::span<const float> values_of(const ForwardModel& model, const Array& array, const char* name) {
     const std::vector<py::ssize_t> wanted = dimensions(model);
@@ -90,8 +107,7 @@ std::span<const float> values_of(const ForwardModel& model, const Array& array, 
                                      fmt::join(array.shape(), array.shape() + array.ndim(), ", "),
                                      fmt::join(wanted, ", ")));
     const std::span<const float> values(array.data(), static_cast<std::size_t>(array.size()));
-    if (!std::ranges::all_of(values, [](float value) { return std::isfinite(value); }))
-        throw InputError(name, "has values that are not finite");
+    if (!are_finite(values)) throw InputError(name, "has values that are not finite");
     return values;
 }
 
@@ -110,28 +126,33 @@ Array mapped(const ForwardModel& model, const Array& array) {
     return result;
 }
 
-/// A step for each slot and pixel, of one for all or of an array (slot, row, col).
-std::vector<float> steps_of(const ForwardModel& model, const Array& step) {
-    const std::size_t pixels = model.shape().pixels();
-    const std::size_t values = index(model.slots()) * pixels;
-    if (step.size() != 1 && static_cast<std::size_t>(step.size()) != values)
+/// A step for each slot and pixel: the values of `step`, or its one value, which `kept` repeats.
+std::span<const float> steps_of(const ForwardModel& model, const Array& step,
+                                std::vector<float>& kept) {
+    const std::size_t values = index(model.slots()) * model.shape().pixels();
+    const std::span<const float> steps(step.data(), static_cast<std::size_t>(step.size()));
+    if (steps.size() != 1 && steps.size() != values)
         throw InputError("step", fmt::format("has {} values, neither 1 nor {}, one for each slot "
                                              "and pixel",
                                              step.size(), values));
-    if (!std::all_of(step.data(), step.data() + step.size(),
-                     [](float value) { return value >= 0 && std::isfinite(value); }))
+    if (!are_finite(steps, 0))
         throw InputError("step", "has values that are negative or not finite");
-    if (step.size() == 1) return std::vector<float>(values, *step.data());
-    return {step.data(), step.data() + step.size()};
+    if (steps.size() == values) return steps;
+    kept.assign(values, steps[0]);
+    return kept;
 }
 
 Array prox(const ForwardModel& model, const Array& v, const Array& step) {
     const std::span<const float> values = values_of(model, v, "v");
-    const std::vector<float> steps = steps_of(model, step);
+    std::vector<float> kept;
+    const std::span<const float> steps = steps_of(model, step, kept);
     Array result(dimensions(model));
     const std::span<float> to = values_of(result);
     const py::gil_scoped_release released;
-    std::ranges::copy(values, to.begin());
+    const std::size_t sites = model.shape().sites();
+    parallel_for(0, model.slots(), [&](int slot) {
+        std::ranges::copy(values.subspan(index(slot) * sites, sites), &to[index(slot) * sites]);
+    });
     model.prox(steps, to);
     return result;
 }

@@ -8,6 +8,7 @@
 
 #include "core/parallel.h"
 #include "decoder/fast/motion_tv.h"
+#include "decoder/forward_model.h"
 #include "decoder/live/live_decoder.h"
 #include "decoder/measurements.h"
 #include "decoder/naive/nearest_samples.h"
@@ -102,6 +103,34 @@ void live(benchmark::State& state) {
     count_voxels(state, 1);
 }
 
+/// An operation of the forward model, on the light `x` of the naive decoder.
+template <typename Operation>
+void operate(benchmark::State& state, const Operation& operation) {
+    const ThreadLimit limit(static_cast<int>(state.range(0)));
+    const ForwardModel model(measurements(1), Calibration{});
+    const FluxVideo x = nearest_samples(measurements(1));
+    FluxVideo result = x;
+    for (auto step : state) {
+        operation(model, x.data(), result.data());
+        benchmark::DoNotOptimize(result);
+    }
+    count_voxels(state, 1);
+}
+
+void forward(benchmark::State& state) {
+    operate(state, [](const ForwardModel& model, auto x, auto y) { model.forward(x, y); });
+}
+void adjoint(benchmark::State& state) {
+    operate(state, [](const ForwardModel& model, auto x, auto y) { model.adjoint(x, y); });
+}
+void prox(benchmark::State& state) {
+    const std::vector<float> steps(measurements(1).voxels(), 0.005F);
+    operate(state, [&](const ForwardModel& model, auto x, auto v) {
+        std::ranges::copy(x, v.begin());
+        model.prox(steps, v);
+    });
+}
+
 void copy(benchmark::State& state) {
     const FluxVideo x(kSlots, shape_of(1));
     FluxVideo y = x;
@@ -125,6 +154,9 @@ BENCHMARK(motion)->Arg(2)->UseRealTime()->Unit(benchmark::kMillisecond);
 BENCHMARK(iteration)->Arg(2)->UseRealTime()->Unit(benchmark::kMillisecond);
 BENCHMARK(naive)->Arg(2)->UseRealTime()->Unit(benchmark::kMillisecond);
 BENCHMARK(live)->Arg(1)->Arg(2)->UseRealTime()->Unit(benchmark::kMillisecond);
+BENCHMARK(forward)->Arg(2)->UseRealTime()->Unit(benchmark::kMillisecond);
+BENCHMARK(adjoint)->Arg(2)->UseRealTime()->Unit(benchmark::kMillisecond);
+BENCHMARK(prox)->Arg(2)->UseRealTime()->Unit(benchmark::kMillisecond);
 BENCHMARK(copy);
 
 }  // namespace
