@@ -24,7 +24,7 @@ enum class DecodeMethod {
     kBest,         ///< collaborative filter of similar patches
     kLearnedFast,  ///< the estimate of fast, refined by a network
     kLearned,      ///< the estimate of best, refined by a network
-    kPlugAndPlay,  ///< the same with a denoiser of the user
+    kPlugAndPlay,  ///< best, with a denoiser of the user
     kPortz2013,    ///< the method of the paper, in two stages
     // Of other coded cameras.
     kReddy2011,   ///< wavelets and brightness constancy

@@ -21,14 +21,11 @@ void require_file(const std::string& file, const char* fault) {
     if (!std::filesystem::exists(file, error)) throw InputError(file, fault);
 }
 
-/// The weights of the file, or those of Stipple, if it has some.
-void read_model(LearnedOptions& options) {
-    std::string file = options.model_file;
-    if (!file.empty())
-        require_file(file, "there is no such network");
-    else if (!config_names(ConfigKind::kModels).empty())
-        file = find_config(ConfigKind::kModels, "refinement").string();
-    if (!file.empty()) options.refine = refinement_of(file);
+/// The weights that the options name, or else those of Stipple, if it has some.
+std::string model_file(const LearnedOptions& options) {
+    if (!options.model_file.empty()) return options.model_file;
+    if (config_names(ConfigKind::kModels).empty()) return {};
+    return find_config(ConfigKind::kModels, "refinement").string();
 }
 
 }  // namespace
@@ -48,7 +45,7 @@ std::string option_file(const DecodeOptions& options) {
     switch (options.method) {
         case DecodeMethod::kLearned:
         case DecodeMethod::kLearnedFast:
-            return options.learned.model_file;
+            return model_file(options.learned);
         case DecodeMethod::kHitomi2011:
             return options.hitomi2011.dictionary_file;
         case DecodeMethod::kPlugAndPlay:
@@ -63,7 +60,9 @@ void read_option_file(DecodeOptions& options) {
     switch (options.method) {
         case DecodeMethod::kLearned:
         case DecodeMethod::kLearnedFast:
-            read_model(options.learned);
+            if (file.empty()) return;
+            require_file(file, "there is no such network");
+            options.learned.refine = refinement_of(file);
             break;
         case DecodeMethod::kPlugAndPlay:
             if (file.empty()) return;

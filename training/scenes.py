@@ -4,6 +4,7 @@ from pathlib import Path
 
 import numpy as np
 import stipple
+from frame_hash import frame_hashes
 from scipy import ndimage
 
 LUMINANCE = np.array([0.2126, 0.7152, 0.0722], np.float32)  # Rec. 709
@@ -56,18 +57,24 @@ class Scenes:
     def __init__(self, footage, kept):
         """kept: a folder for what has been decoded."""
         kept.mkdir(exist_ok=True)
-        self.videos, self.panoramas = [], []
+        self.videos, self.panoramas, self.hashes = [], [], {}
         for path in sorted(Path(footage).glob("*.mp4")):
             file = kept / f"{path.stem}.npy"
             if not file.exists():
                 light = stipple.load(path, transfer="gamma22", luminance=True)
                 np.save(file, reduced(light[:200]).astype(np.float16))
             self.videos.append(np.load(file, mmap_mode="r"))
+            self.hashes[path.name] = frame_hashes(self.videos[-1])
         for path in sorted(Path(footage).glob("*.hdr")):
             file = kept / f"{path.stem}.panorama.npy"
             if not file.exists():
                 np.save(file, read_radiance(path) @ LUMINANCE)
             self.panoramas.append(np.load(file))
+            self.hashes[path.name] = frame_hashes(self.panoramas[-1][np.newaxis])
+
+    def write_hashes(self, file):
+        """Lines of a source and the hash of a frame."""
+        file.write_text("".join(f"{name} {frame.tobytes().hex()}\n" for name, frames in self.hashes.items() for frame in frames))
 
     def clip(self, random, slots, side):
         """Light of about 0 to 1, at most 2."""
