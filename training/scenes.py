@@ -1,14 +1,15 @@
-"""Scenes to train on: crops of videos, views of panoramas that move, and the embedded scenes."""
+"""Scenes to train on: crops of videos, views of panoramas and drawings that move, and the embedded scenes."""
 
 from pathlib import Path
 
 import numpy as np
 import stipple
+from drawings import drawing
 from frame_hash import frame_hashes
 from scipy import ndimage
 
 LUMINANCE = np.array([0.2126, 0.7152, 0.0722], np.float32)  # Rec. 709
-SHARES = {"video": 0.55, "panorama": 0.3, "embedded": 0.15}
+SHARES = {"video": 0.35, "panorama": 0.35, "embedded": 0.15, "drawing": 0.15}
 EMBEDDED = ("pan", "roll", "pencils", "dice", "still")
 SUBSTEPS = 4  # instants of a slot
 
@@ -87,16 +88,19 @@ class Scenes:
             video = video.transpose(0, 2, 1)
         if random.random() < 0.5:
             video = video[::-1]
+        if random.random() < 0.4:  # grain, as of footage that a camera has taken
+            video = video + random.uniform(0, 0.008) * np.sqrt(video + 0.02) * random.standard_normal(video.shape)
         return np.ascontiguousarray(np.clip(video, 0, 2), np.float32)
 
     def video(self, random, slots, side):
         source = self.videos[random.integers(len(self.videos))]
         frames, rows, cols = source.shape
-        step = int(random.choice([1, 1, 2])) if min(rows, cols) >= 2 * side + 8 else 1
-        first = random.integers(0, frames - slots + 1)
+        step = min(int(random.integers(1, 4)), min(rows, cols) // side)
+        pause = 2 if frames >= 2 * slots and random.random() < 0.3 else 1
+        first = random.integers(0, frames - pause * slots + 1)
         top, left = random.integers(0, rows - side * step + 1), random.integers(0, cols - side * step + 1)
-        part = source[first:first + slots, top:top + side * step, left:left + side * step].astype(np.float32)
-        part = part.reshape(slots, side, step, side, step).mean((2, 4))
+        part = source[first:first + pause * slots:pause, top:top + side * step, left:left + side * step]
+        part = part.astype(np.float32).reshape(slots, side, step, side, step).mean((2, 4))
         return part * random.choice([1, 1, 1, 0.5, 1.5])
 
     def embedded(self, random, slots, side):
@@ -107,13 +111,18 @@ class Scenes:
         return scene[:, top:top + side, left:left + side]
 
     def panorama(self, random, slots, side):
-        """Turns, zooms and shakes; sometimes with a piece of another panorama that moves in front."""
-        source = self.panoramas[random.integers(len(self.panoramas))]
+        return self.moving(random, slots, side, self.panoramas[random.integers(len(self.panoramas))])
+
+    def drawing(self, random, slots, side):
+        return self.moving(random, slots, side, drawing(random))
+
+    def moving(self, random, slots, side, source):
+        """Turns, zooms and shakes; sometimes with a piece of a panorama that moves in front."""
         rows, cols = source.shape
         still = random.random() < 0.1
         speed, shake, turn, zoom = (0 if still else value for value in (
             random.normal(0, 2.5, 2), random.uniform(0, 1.2), np.radians(random.normal(0, 0.2)), random.normal(0, 0.002)))
-        scale = random.choice([0.5, 0.75, 1.0])
+        scale = random.choice([0.5, 0.75, 1.0, 1.5, 2.0])
         centre = np.array([random.uniform(100, rows - 100), random.uniform(150, cols - 150)])
         phase = random.uniform(0, 2 * np.pi, 2)
         piece = Piece(random, self.panoramas, source, slots, side) if random.random() < 0.6 else None
