@@ -6,10 +6,12 @@
 #include <variant>
 #include <vector>
 
+#include "apps/arguments/common_options.h"
 #include "apps/explore_run.h"
 #include "apps/output/json_file.h"
 #include "apps/subcommands.h"
 #include "core/config.h"
+#include "decoder/decode_method.h"
 #include "study/explore/results.h"
 #include "study/explore/rivals.h"
 
@@ -20,6 +22,7 @@ struct RivalsArguments {
     RivalsChoice choice;
     std::string results;
     std::string space = "rivals";
+    std::vector<std::string> methods = {};
     FootageOptions reading = {};
     int seeds = 1;
 };
@@ -53,6 +56,7 @@ void compare_rivals(const RivalsArguments& arguments, const RunOptions& run) {
                     .options = {}};
     what.options.reading = arguments.reading;
     what.options.seeds = arguments.seeds;
+    what.options.methods = arguments.methods;
     what.options.replaced = arguments.choice.replaced();
     JsonFile json(run);
     const Exploration exploration = explored(what, run);
@@ -92,6 +96,12 @@ void add_rivals(Command& app, Action& action) {
     command.add_list("--system", arguments->choice.systems, "only this one; may be repeated")
         .type_name("NAME")
         .default_text("all");
+    command
+        .add_list("--method", arguments->methods,
+                  "also decode by this one what has one sensor and is decoded by best, as \"coded "
+                  "learned\"; may be repeated")
+        .type_name("NAME")
+        .one_of(names_of(decode_methods()));
     command
         .add_option("--dictionary", arguments->choice.dictionary,
                     "dictionary of hitomi2011, of \"stipple dictionary\"")

@@ -4,6 +4,8 @@ import json
 import os
 import struct
 
+import numpy as np
+import torch
 from torch import nn
 from torch.nn import functional as F
 
@@ -63,3 +65,12 @@ def write_safetensors(path, arrays, metadata):
     with open(partial, "wb") as file:
         file.write(struct.pack("<Q", len(text)) + text + data)
     os.replace(partial, path)
+
+
+def read_safetensors(path):
+    """The arrays as float32 tensors, by name."""
+    with open(path, "rb") as file:
+        header, data = json.loads(file.read(struct.unpack("<Q", file.read(8))[0])), file.read()
+    return {name: torch.from_numpy(np.frombuffer(data[slice(*entry["data_offsets"])], {"F16": "<f2", "F32": "<f4"}[entry["dtype"]])
+                                   .reshape(entry["shape"]).astype(np.float32))
+            for name, entry in header.items() if name != "__metadata__"}

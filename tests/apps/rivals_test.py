@@ -95,6 +95,13 @@ frames = 36"""))
         self.assertIn("compared: slots 7:24 (first:end) of 32",
                       self.succeed("rivals", "clip.npy", "-o", "results", "--space", "space.toml", "--luminance"))
 
+    def test_other_methods_decode_what_best_decodes(self):
+        space = SPACE.replace('"random"\nmethod = "naive"', '"random"\nmethod = "best"').replace("rows = 32", "rows = 16")
+        (self.folder / "space.toml").write_text(space)
+        rows = self.rivals("pan", "--method", "fast", "--system", "coded", "--system", "coded fast")
+        self.assertEqual([(row["system"], row["method"]) for row in rows], [("coded", "best"), ("coded fast", "fast")])
+        self.fails(2, ["slow"], "rivals", "pan", "-o", "more", "--method", "slow")
+
     def test_rows_of_a_space_without_systems_have_the_values_that_differ(self):
         (self.folder / "space.toml").write_text('[axes]\nsensor = "paper"\nmethod = "naive"\nseed = [7, 8]\n'
                                                 'schedule = ["full1x", "full4x"]\n[clip]\nframes = 12\n')
