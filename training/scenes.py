@@ -88,8 +88,10 @@ class Scenes:
             video = video.transpose(0, 2, 1)
         if random.random() < 0.5:
             video = video[::-1]
-        if random.random() < 0.4:  # grain, as of footage that a camera has taken
-            video = video + random.uniform(0, 0.008) * np.sqrt(video + 0.02) * random.standard_normal(video.shape)
+        if random.random() < 0.5:  # less contrast
+            video = random.uniform(0.15, 1) * np.maximum(video, 0) ** random.uniform(0.3, 1)
+        if random.random() < 0.4:
+            video = video + random.uniform(0, 0.015) * np.sqrt(video + 0.02) * grain(random, video.shape)
         return np.ascontiguousarray(np.clip(video, 0, 2), np.float32)
 
     def video(self, random, slots, side):
@@ -160,6 +162,13 @@ class Piece:
         cover, light = (ndimage.affine_transform(image, turn, offset, view.shape, order=1)
                         for image in (self.cover, self.light))
         return view * (1 - cover) + light * cover
+
+
+def grain(random, shape):
+    """Noise of unit variance, as of footage that a camera has taken and a codec may have smoothed."""
+    sigma = random.choice([0, 0.6, 1.0, 1.5])
+    noise = ndimage.gaussian_filter(random.standard_normal(shape, np.float32), (random.uniform(0, sigma), sigma, sigma))
+    return noise / noise.std()
 
 
 def sampled(image, centre, angle, scale, side):
