@@ -9,7 +9,7 @@ from frame_hash import frame_hashes
 from scipy import ndimage
 
 LUMINANCE = np.array([0.2126, 0.7152, 0.0722], np.float32)  # Rec. 709
-SHARES = {"video": 0.35, "panorama": 0.35, "embedded": 0.15, "drawing": 0.15}
+SHARES = {"video": 0.3, "panorama": 0.4, "embedded": 0.1, "drawing": 0.2}
 EMBEDDED = ("pan", "roll", "pencils", "dice", "still")
 SUBSTEPS = 4  # instants of a slot
 
@@ -121,7 +121,7 @@ class Scenes:
     def moving(self, random, slots, side, source):
         """Turns, zooms and shakes; sometimes with a piece of a panorama that moves in front."""
         rows, cols = source.shape
-        still = random.random() < 0.1
+        still = random.random() < 0.35
         speed, shake, turn, zoom = (0 if still else value for value in (
             random.normal(0, 2.5, 2), random.uniform(0, 1.2), np.radians(random.normal(0, 0.2)), random.normal(0, 0.002)))
         scale = random.choice([0.5, 0.75, 1.0, 1.5, 2.0])

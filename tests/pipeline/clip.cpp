@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "core/config.h"
+#include "decoder/decode_options.h"
 #include "decoder/measurements.h"
 #include "io/footage_reader.h"
 #include "readout/emulator.h"
@@ -14,6 +15,7 @@
 #include "sensor_model/sensor_config.h"
 #include "sensor_model/slot_light.h"
 #include "tests/support/footage_folder.h"
+#include "tests/support/source_tree.h"
 #include "tests/support/temporary_folder.h"
 
 namespace stipple {
@@ -127,12 +129,20 @@ void write_mosaic(const FluxVideo& video, ColourFilter cfa, const NamedSchedule&
     writer.finish();
 }
 
+DecodeOptions options_of(DecodeMethod method) {
+    DecodeOptions options{.method = method};
+    if (method == DecodeMethod::kLearned || method == DecodeMethod::kLearnedFast)
+        options.learned.refine =
+            refinement_of(project_path("config/models/refinement.safetensors").string());
+    return options;
+}
+
 FluxVideo read_recording(const std::filesystem::path& file, DecodeMethod method,
                          std::vector<SiteCalibration> sites, ResponseTable response) {
     StreamReader reader(file, ReadPolicy::kStrict);
     reader.use_sites(std::move(sites), std::move(response));
     FluxVideo video(static_cast<int>(reader.slots().value()), decoded_shape(reader.header()));
-    decode(reader, method, [&](std::int64_t slot, std::span<const float> frame) {
+    decode(reader, options_of(method), [&](std::int64_t slot, std::span<const float> frame) {
         std::ranges::copy(frame, video.frame(static_cast<int>(slot)).begin());
         return true;
     });

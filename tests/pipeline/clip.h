@@ -8,6 +8,7 @@
 
 #include "core/colour_filter.h"
 #include "core/flux_video.h"
+#include "decoder/decode_options.h"
 #include "decoder/reconstruct.h"
 #include "readout/schedules/named_schedule.h"
 #include "sensor_model/sensor_params.h"
@@ -55,6 +56,9 @@ void write_recording(const FluxVideo& video, const NamedSchedule& schedule,
 /// The same through a colour filter array, on a video in colour.
 void write_mosaic(const FluxVideo& video, ColourFilter cfa, const NamedSchedule& schedule,
                   const std::filesystem::path& file);
+
+/// Defaults; those of `learned` and `learned_fast` with the weights of Stipple.
+[[nodiscard]] DecodeOptions options_of(DecodeMethod method);
 
 /// Decoded with this calibration of the sites, if there is one, and this response.
 [[nodiscard]] FluxVideo read_recording(const std::filesystem::path& file, DecodeMethod method,

@@ -84,6 +84,11 @@ TEST(GoldenDecodeTest, BestKeepsItsBits) {
     expect_golden("best_colour", kColour, DecodeMethod::kBest);
 }
 
+TEST(GoldenDecodeTest, LearnedKeepsItsBits) {
+    expect_golden("learned_mono", kMono, DecodeMethod::kLearned);
+    expect_golden("learned_fast_colour", kColour, DecodeMethod::kLearnedFast);
+}
+
 TEST(GoldenDecodeTest, Portz2013KeepsItsBits) {
     expect_golden("portz2013_mono", kSmall, DecodeMethod::kPortz2013);
 }

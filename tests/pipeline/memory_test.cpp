@@ -38,7 +38,7 @@ std::uint64_t decoding_bytes(const std::filesystem::path& file, DecodeMethod met
     StreamReader reader(file);
     reset_peak();
     const std::uint64_t before = status_bytes("VmRSS");
-    DecodeOptions options{.method = method};
+    DecodeOptions options = options_of(method);
     for (MotionTvOptions* fast : {&options.fast, &options.best.start})  // more take no more
         fast->static_tv.iterations = fast->along_motion.iterations = fast->last_iterations = 2;
     options.best.iterations = 2;
@@ -112,7 +112,8 @@ TEST_P(MemoryTest, ABlockTakesWhatTheTableOfMethodsSays) {
 
 INSTANTIATE_TEST_SUITE_P(Methods, MemoryTest,
                          testing::Values(DecodeMethod::kNaive, DecodeMethod::kFast,
-                                         DecodeMethod::kBest, DecodeMethod::kReddy2011,
+                                         DecodeMethod::kBest, DecodeMethod::kLearnedFast,
+                                         DecodeMethod::kLearned, DecodeMethod::kReddy2011,
                                          DecodeMethod::kHitomi2011, DecodeMethod::kInterpolated,
                                          DecodeMethod::kBennett2005, DecodeMethod::kZhang2009,
                                          DecodeMethod::kVbm4d, DecodeMethod::kShahar2011,
