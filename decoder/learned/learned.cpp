@@ -13,12 +13,14 @@
 #include "decoder/learned/refinement_inputs.h"
 #include "decoder/learned/refinement_network.h"
 #include "decoder/measurements.h"
+#include "decoder/sampling_operator.h"
 
 namespace stipple {
 namespace {
 
 constexpr double kFastShare = 0.5;  // of all work; for the progress
 constexpr double kBestShare = 0.85;
+constexpr float kMaxSigmas = 5;
 constexpr float kMaxValue = 1e9F;  // its square, light, is far from the largest float
 
 /// \throws InputError as decode_learned, before any work.
@@ -35,6 +37,26 @@ struct Estimates {
     const FluxVideo& start;  ///< may be the other one
     FluxVideo& refined;      ///< on entry not yet
 };
+
+/// Where a sample contradicts the refined light more than the estimate, its voxels keep the
+/// estimate: by five standard deviations of its noise, a saturated one at once.
+void keep_contradicted(const Measurements& m, const FluxVideo& estimate, FluxVideo& refined) {
+    std::vector<float> before(m.voxels()), after(m.voxels());
+    sample(m, estimate.data(), before);
+    sample(m, refined.data(), after);
+    const auto is_contradicted = [&](std::size_t i) {
+        const bool saturated = (m.state[i] & Measurements::kSaturated) != 0;
+        const float lack = m.sum[i] - after[i], lack_before = m.sum[i] - before[i];
+        if (saturated) return lack > 0 && lack > lack_before;
+        return std::abs(lack) > kMaxSigmas * std::sqrt(m.variance[i]) &&
+               std::abs(lack) > std::abs(lack_before);
+    };
+    for (std::size_t i = 0; i < m.voxels(); ++i)
+        after[i] = (m.state[i] & Measurements::kLast) != 0 && is_contradicted(i) ? 1.0F : 0.0F;
+    spread(m, after, after);
+    for (std::size_t i = 0; i < m.voxels(); ++i)
+        if (after[i] > 0) refined.data()[i] = estimate.data()[i];
+}
 
 /// False if `progress` has stopped it.
 bool refine_estimate(const SplittingTask& task, const Estimates& estimates, const Refiner& refine,
@@ -59,6 +81,7 @@ bool refine_estimate(const SplittingTask& task, const Estimates& estimates, cons
         }
         if (!progress(static_cast<double>(slot + 1) / x.slots())) return false;
     }
+    keep_contradicted(task.measurements, x, result);
     x = std::move(result);
     return true;
 }

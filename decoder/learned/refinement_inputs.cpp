@@ -17,6 +17,7 @@ namespace {
 constexpr float kMinOffset = 0.002F;
 constexpr float kMaxOffset = 1e3F;
 constexpr float kOffsetSlots = 32;
+constexpr float kPerLight = 1.0F / 1000;  ///< Var' of the sensor `paper`
 constexpr float kClip = 2;
 constexpr std::array kSteps{-2, -1, 1, 2};  ///< slots of the neighbours in time
 
@@ -35,10 +36,10 @@ RefinementInputs::RefinementInputs(const Measurements& measurements, const Sampl
                                    const FluxVideo& estimate, const FluxVideo& start)
     : shape_(estimate.shape()),
       slots_(estimate.slots()),
-      offset_(
-          std::clamp(noise.variance(0) / noise.per_light() / kOffsetSlots, kMinOffset, kMaxOffset)),
-      noise_input_(clipped(log2_steps(1000 * noise.per_light()) / 4)),
-      dark_input_(clipped(20 * std::sqrt(noise.variance(0)))),
+      unit_(kPerLight / noise.per_light()),
+      offset_(std::clamp(unit_ * noise.variance(0) / noise.per_light() / kOffsetSlots, kMinOffset,
+                         kMaxOffset)),
+      dark_input_(clipped(20 * unit_ * std::sqrt(noise.variance(0)))),
       estimate_(estimate),
       start_(start),
       root_(estimate.voxels()),
@@ -47,8 +48,7 @@ RefinementInputs::RefinementInputs(const Measurements& measurements, const Sampl
       bound_(estimate.voxels()) {
     parallel_for(0, slots_, [&](int slot) {
         const auto light = estimate.frame(slot);
-        std::ranges::transform(light, &root_[voxel(slot, 0)],
-                               [&](float x) { return std::sqrt(std::max(x, 0.0F) + offset_); });
+        std::ranges::transform(light, &root_[voxel(slot, 0)], [&](float x) { return root_of(x); });
     });
     sample(measurements, estimate.data(), residual_);
     trace_exposures(measurements);
@@ -78,9 +78,13 @@ void RefinementInputs::trace_exposures(const Measurements& m) {
     spread(m, length_, length_);
     for_each_voxel([&](std::size_t i) {
         bound_[i] = bounds[i] > 0 ? 1 : 0;
-        residual_[i] = clipped(2 * residual_[i] / root_[i]);
+        residual_[i] = clipped(2 * unit_ * residual_[i] / root_[i]);
         length_[i] = length_[i] > 0 ? clipped(log2_steps(length_[i]) / 3) : -1;
     });
+}
+
+float RefinementInputs::root_of(float light) const {
+    return std::sqrt(std::max(unit_ * light, 0.0F) + offset_);
 }
 
 std::size_t RefinementInputs::voxel(int slot, int plane) const {
@@ -147,12 +151,12 @@ void RefinementInputs::write(int slot, int plane, std::span<float> inputs) const
     const float* started = &start_.data()[voxel(slot, plane)];
     for (std::size_t i = 0; i < pixels; ++i) {
         inputs[i] = std::min(root[i], kMaxRoot);
-        input(1)[i] = clipped(std::sqrt(std::max(started[i], 0.0F) + offset_) - root[i]);
+        input(1)[i] = clipped(root_of(started[i]) - root[i]);
     }
     parallel_for(0, static_cast<int>(kSteps.size()),
                  [&](int i) { write_neighbour(slot, plane, kSteps[index(i)], input(2 + i)); });
     write_exposures(slot, plane, inputs);
-    std::ranges::fill(input(13), noise_input_);
+    std::ranges::fill(input(13), 0.0F);
     std::ranges::fill(input(14), dark_input_);
 }
 
@@ -162,8 +166,8 @@ void RefinementInputs::restore(int slot, int plane, std::span<const float> refin
     for (std::size_t i = 0; i < light.size(); ++i) {
         const float root = root_[begin + i];
         const float better = std::max(refined[i] + std::max(root - kMaxRoot, 0.0F), 0.0F);
-        light[i] =
-            std::max(estimate_.data()[begin + i] + (better - root) * (better + root), -offset_);
+        light[i] = std::max(estimate_.data()[begin + i] + (better - root) * (better + root) / unit_,
+                            -offset_ / unit_);
     }
 }
 

@@ -20,23 +20,24 @@ inline constexpr std::string_view kRefinementInputsName = "1";
 
 /// An estimate of a block in the domain of the refinement network,
 ///
-///     v = sqrt(x + offset),   offset = min(max(Var(0) / (32 Var'), 0.002), 1000),
+///     v = sqrt(u x + offset),   offset = min(max(u Var(0) / (32 Var'), 0.002), 1000),
 ///
-/// with the variance Var of a sample without light and its increase Var' per light; and what the
-/// network sees of each voxel of a plane:
+/// with the variance Var of a sample without light, its increase Var' per light, and u = 1 / (1000
+/// Var'), so that light has the shot noise that it has in the sensor `paper`, whatever its unit is.
+/// What the network sees of each voxel of a plane:
 ///
 ///     0       v
 ///     1       v of the start estimate - v
 ///     2..5    v of the slots t - 2, t - 1, t + 1, t + 2 along motion - v, times the confidence
-///     6       residual q = 2 r / v, with r the share of the voxel in y - A x of its sample
+///     6       residual q = 2 u r / v, with r the share of the voxel in y - A x of its sample
 ///             (A^T (A A^T)^-1); 0 without a sample, and where a saturated one has no more light
 ///     7       length l = log2(n) / 3 of the exposure, n open slots (weighted: w sum(w^2)); -1
 ///             without one
 ///     8       1 if its sample is saturated, else 0
 ///     9, 10   q of the slots t - 1 and t + 1
 ///     11, 12  l of these
-///     13      log2(1000 Var') / 4
-///     14      20 sqrt(Var(0))
+///     13      0 (in training, for lack of u, log2(1000 Var') / 4)
+///     14      20 u sqrt(Var(0))
 ///
 /// At the ends of the block the slot itself takes the place of those that are missing. All values
 /// are clipped to -2..2, but the first to at most `kMaxRoot`.
@@ -52,8 +53,9 @@ class RefinementInputs {
     /// Writes the inputs of a plane, order (input, row, col). The same bits for any thread count.
     void write(int slot, int plane, std::span<float> inputs) const;
 
-    /// The light of the plane whose root the network has changed from v to `refined`: x + refined^2
-    /// - v^2, at least -offset. Beyond kMaxRoot it is the change of the input that is added to v.
+    /// The light of the plane whose root the network has changed from v to `refined`: x +
+    /// (refined^2 - v^2) / u, at least -offset / u. Beyond kMaxRoot it is the change of the input
+    /// that is added to v.
     void restore(int slot, int plane, std::span<const float> refined, std::span<float> light) const;
 
   private:
@@ -63,6 +65,7 @@ class RefinementInputs {
     };
 
     void trace_exposures(const Measurements& measurements);
+    [[nodiscard]] float root_of(float light) const;
     [[nodiscard]] std::size_t voxel(int slot, int plane) const;
     [[nodiscard]] Point follow(Point from, int slot, int step) const;
     void write_neighbour(int slot, int plane, int steps, std::span<float> to) const;
@@ -70,8 +73,8 @@ class RefinementInputs {
 
     FrameShape shape_;
     int slots_;
+    float unit_;  ///< u
     float offset_;
-    float noise_input_;
     float dark_input_;
     const FluxVideo& estimate_;
     const FluxVideo& start_;

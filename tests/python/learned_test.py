@@ -33,12 +33,12 @@ class RefinerTest(unittest.TestCase):
 
         def refiner(inputs):
             shapes.append(inputs.shape)
-            return inputs[0] + 0.25
+            return inputs[0] + 0.01
 
         result = stipple.decode(colour, "learned_fast", refiner=refiner)
         self.assertEqual(shapes, [(15, 32, 40)] * 36)
-        # (v + 1/4)^2 = v^2 + v / 2 + 1/16, of an estimate that may be a little below 0
-        self.assertGreater((result - stipple.decode(colour, "fast")).min(), 0.04)
+        # (v + 0.01)^2 = v^2 + 0.02 v + 0.0001: too little for most samples to contradict it
+        self.assertGreater(np.median(result - stipple.decode(colour, "fast")), 1e-4)
 
     def test_wrong_ones_are_named(self):
         self.fails(["refiner: 3 is not a function"], refiner=3)

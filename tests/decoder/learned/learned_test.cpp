@@ -90,6 +90,24 @@ TEST(LearnedTest, ARefinerThatKnowsTheTruthGivesItBack) {
     }
 }
 
+TEST(LearnedTest, WhatTheSamplesContradictStaysTheEstimate) {
+    FluxVideo video = moving_bar(kShape);
+    for (float& light : video.data()) light *= 0.2F;  // 8 slots of it are below full scale
+    Measurements m =
+        measure(video, random_schedule(kShape.rows, kShape.cols, kPaperExposureSlots, 1));
+    Measurements for_fast = m;  // whose variances change
+    const FluxVideo fast = *decode_motion_tv(for_fast, paper_noise(), {});
+    const FluxVideo refined = *decode_learned_fast(
+        {m, paper_noise(), kGoOn}, {}, [](const RefinerInput& input, std::span<float> roots) {
+            keep(input, roots);
+            for (float& root : roots) root += 1;
+        });
+    for (std::size_t i = 0; i < m.voxels(); ++i) {
+        const bool measured = (m.state[i] & Measurements::kOpen) != 0;
+        EXPECT_EQ(refined.data()[i] == fast.data()[i], measured) << i;
+    }
+}
+
 TEST(LearnedTest, WhatTheRefinerThrowsEndsIt) {
     EXPECT_THROW(learned_fast([](const RefinerInput&, std::span<float>) {
                      throw std::out_of_range("mine");

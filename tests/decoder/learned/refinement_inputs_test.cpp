@@ -9,6 +9,7 @@
 #include "core/index.h"
 #include "decoder/measurements.h"
 #include "decoder/pixel_response.h"
+#include "readout/coded_sensor.h"
 #include "tests/decoder/hand_made.h"
 #include "tests/decoder/recordings.h"
 
@@ -21,9 +22,10 @@ const float kOffset = paper_noise().variance(0) / paper_noise().per_light() / 32
 /// The inputs of all slots of one plane.
 class Inputs {
   public:
-    Inputs(const Measurements& m, const FluxVideo& estimate, const FluxVideo& start, int plane = 0)
+    Inputs(const Measurements& m, const FluxVideo& estimate, const FluxVideo& start, int plane = 0,
+           const SampleNoise& noise = paper_noise())
         : shape_(estimate.shape()) {
-        const RefinementInputs inputs(m, paper_noise(), estimate, start);
+        const RefinementInputs inputs(m, noise, estimate, start);
         for (int slot = 0; slot < estimate.slots(); ++slot) {
             slots_.emplace_back(kRefinementInputs * shape_.pixels());
             inputs.write(slot, plane, slots_.back());
@@ -137,8 +139,24 @@ TEST(RefinementInputsTest, FindsTheNeighboursAlongMotion) {
 TEST(RefinementInputsTest, TellsOfTheNoise) {
     const FluxVideo x = flat_video(1, kSite, 0.2F);
     const Inputs paper(nothing(x), x, x);
-    EXPECT_NEAR(paper.at(13, 0, 0, 0), std::log2(1000 * paper_noise().per_light()) / 4, 1e-6);
+    EXPECT_EQ(paper.at(13, 0, 0, 0), 0);
     EXPECT_NEAR(paper.at(14, 0, 0, 0), 20 * std::sqrt(paper_noise().variance(0)), 1e-6);
+}
+
+TEST(RefinementInputsTest, DoNotDependOnTheUnitOfLight) {
+    // Light 1.0 has 1000 electrons, and 1/8 as much light in 8 times the unit.
+    Calibration calibration = calibration_of({});
+    const SampleNoise noise(calibration);
+    calibration.electrons_per_unit *= 8;
+    const SampleNoise other(calibration);
+    const auto seen = [](float unit, const SampleNoise& of) {
+        const FluxVideo x = flat_video(2, kSite, 0.2F / unit);
+        const Measurements m = hand_made(2, kSite, {{.open_slots = 0b11, .light = 0.5F / unit}});
+        return Inputs(m, x, flat_video(2, kSite, 0.3F / unit), 0, of);
+    };
+    const Inputs one = seen(1, noise), eight = seen(8, other);
+    for (int input = 0; input < kRefinementInputs; ++input)
+        EXPECT_NEAR(one.at(input, 0, 0, 0), eight.at(input, 0, 0, 0), 1e-6) << input;
 }
 
 TEST(RefinementInputsTest, RestoresTheLightAlsoBeyondTheLargestRoot) {
