@@ -99,7 +99,7 @@ def main():
             qualities = []
             for method in (base, refined):
                 decoded[method] = stipple.decode(stream, method, options if method == refined else {})
-                quality = stipple.compare(decoded[method], video, margin=MARGIN)
+                quality = stipple.compare(decoded[method], video, margin=MARGIN, max_value=2)
                 qualities.append(np.array([quality.psnr_db, quality.psnr_gamma_db]))
             texts += ["{:.1f}/{:.1f}".format(*qualities[0]), "{:+.2f}/{:+.2f}".format(*(qualities[1] - qualities[0]))]
         print(f"| {name} | {' | '.join(texts)} |", flush=True)
