@@ -21,6 +21,9 @@ namespace {
 constexpr double kFastShare = 0.5;  // of all work; for the progress
 constexpr double kBestShare = 0.85;
 constexpr float kMaxSigmas = 5;
+constexpr std::size_t kDarkInput = 14;
+constexpr float kMinDark = 0.19F;  // 20 u sqrt(Var(0)) of sensors that the weights are for
+constexpr float kMaxDark = 0.31F;
 constexpr float kMaxValue = 1e9F;  // its square, light, is far from the largest float
 
 /// \throws InputError as decode_learned, before any work.
@@ -111,6 +114,11 @@ Refiner refinement_of(const std::string& file) {
                               network->inputs(), inputs == metadata.end() ? "" : inputs->second,
                               kRefinementInputs, kRefinementInputsName));
     return [network](const RefinerInput& input, std::span<float> refined) {
+        const float dark = input.inputs[kDarkInput * refined.size()];
+        if (dark < kMinDark || dark > kMaxDark) {
+            std::ranges::copy(input.inputs.first(refined.size()), refined.begin());
+            return;
+        }
         network->refine(input.inputs, input.rows, input.cols, refined);
     };
 }

@@ -34,7 +34,9 @@ struct LearnedOptions {
 void read_options(Config& config, LearnedOptions& options);
 
 /// The refiner of a file of weights: RefinementNetwork, whose metadata has `inputs` =
-/// kRefinementInputsName. \throws InputError as RefinementNetwork::read, and if the network is made
+/// kRefinementInputsName. It keeps the estimate where the variance without light is not that of 9.5
+/// to 15.5 electrons in the scale of light (refinement_inputs.h), for which it is not trained.
+/// \throws InputError as RefinementNetwork::read, and if the network is made
 /// for other inputs.
 [[nodiscard]] Refiner refinement_of(const std::string& file);
 

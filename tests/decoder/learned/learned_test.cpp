@@ -162,11 +162,17 @@ class WeightsTest : public testing::Test {
 TEST_F(WeightsTest, AreTheRefiner) {
     const std::string path = file(kRefinementInputs, "1");
     const RefinementNetwork network = RefinementNetwork::read(path);
-    const std::vector<float> seen = random_values(kRefinementInputs * std::size_t{8} * 16, 0, 1, 3);
+    std::vector<float> seen = random_values(kRefinementInputs * std::size_t{8} * 16, 0, 1, 3);
+    seen[14 * std::size_t{8} * 16] = 0.2F;
     std::vector<float> expected(8 * 16), refined(8 * 16);
     network.refine(seen, 8, 16, expected);
     refinement_of(path)({seen, 8, 16}, refined);
     EXPECT_EQ(refined, expected);
+    for (const float other : {0.02F, 1.2F}) {  // no read noise that the weights are for
+        seen[14 * std::size_t{8} * 16] = other;
+        refinement_of(path)({seen, 8, 16}, refined);
+        EXPECT_TRUE(std::ranges::equal(refined, std::span(seen).first(refined.size())));
+    }
 }
 
 TEST_F(WeightsTest, MustBeMadeForTheseInputs) {
