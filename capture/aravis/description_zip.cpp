@@ -60,7 +60,7 @@ class ZipFile {
             return content;
         }
         z_stream inflating{};
-        inflating.next_in = const_cast<std::uint8_t*>(&bytes_[at]);
+        inflating.next_in = const_cast<std::uint8_t*>(bytes_.data() + at);
         inflating.avail_in = static_cast<uInt>(packed);
         inflating.next_out = content.data();
         inflating.avail_out = static_cast<uInt>(size);

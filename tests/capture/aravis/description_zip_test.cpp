@@ -42,5 +42,13 @@ TEST(DescriptionZipTest, WhereverItIsCutOrChangedNothingIsReadOutside) {
         }
 }
 
+TEST(DescriptionZipTest, NothingPackedAtTheEndOfTheBytesIsNotRead) {
+    Bytes zip = zip_of(kXml, true);
+    const std::size_t directory = zip.size() - 22 - 51;
+    zip[directory + 20] = zip[directory + 21] = 0;                   // packed bytes
+    zip[28] = static_cast<std::uint8_t>(zip.size() - 30 - zip[26]);  // bytes before them
+    static_cast<void>(unzipped_description(zip, 1000));              // the sanitizers look
+}
+
 }  // namespace
 }  // namespace stipple
