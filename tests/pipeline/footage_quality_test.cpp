@@ -12,6 +12,9 @@
 namespace stipple {
 namespace {
 
+constexpr const char* kClips[] = {"mouse250_a", "mouse250_b",  "nat30_blocks", "nat30_coffee",
+                                  "hdr_desk",   "hdr_desk_fg", "hdr_stilllife"};
+
 class FootageQualityTest : public testing::TestWithParam<ClipFigures> {};
 class BestOnFootageTest : public FootageQualityTest {};
 
@@ -43,8 +46,6 @@ TEST_P(BestOnFootageTest, BestIsAsGoodAsMeasuredAndBetterThanConventionalCameras
 }
 
 TEST(LiveOnFootageTest, LiveIsBetterThanNaiveOnEachClip) {
-    constexpr const char* kClips[] = {"mouse250_a", "mouse250_b",  "nat30_blocks", "nat30_coffee",
-                                      "hdr_desk",   "hdr_desk_fg", "hdr_stilllife"};
     double linear_db = 0;
     double gamma_db = 0;
     for (const char* name : kClips) {
@@ -70,8 +71,6 @@ struct Gain {
 
 // Means over the middle 128 x 128 pixels and the first 32 slots of the clips.
 TEST(LearnedFootageTest, LearnedIsBetterThanWhatItRefines) {
-    constexpr const char* kClips[] = {"mouse250_a", "mouse250_b",  "nat30_blocks", "nat30_coffee",
-                                      "hdr_desk",   "hdr_desk_fg", "hdr_stilllife"};
     const TemporaryFolder folder;
     Gain best, fast;
     for (const char* name : kClips) {
@@ -97,8 +96,6 @@ TEST(LearnedFootageTest, LearnedIsBetterThanWhatItRefines) {
 // Over frames of four slots held, which is what the camera gives. Means over the first 32 slots of
 // the middles of the clips.
 TEST(ConventionalFootageTest, BestOnFramesOfFourSlotsIsBetterThanHoldingThemMostInTheMiddle) {
-    constexpr const char* kClips[] = {"mouse250_a", "mouse250_b",  "nat30_blocks", "nat30_coffee",
-                                      "hdr_desk",   "hdr_desk_fg", "hdr_stilllife"};
     constexpr int kSlots = 32;
     constexpr int kSides[] = {256, 128};
     Gain gains[std::size(kSides)];
