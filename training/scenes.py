@@ -90,6 +90,8 @@ class Scenes:
             video = video[::-1]
         if random.random() < 0.5:  # less contrast
             video = random.uniform(0.15, 1) * np.maximum(video, 0) ** random.uniform(0.3, 1)
+        if random.random() < 0.1:  # flashes
+            video = video * np.where(random.random((slots, 1, 1)) < random.uniform(0.05, 0.6), 1, random.uniform(0.02, 0.5))
         if random.random() < 0.4:
             video = video + random.uniform(0, 0.015) * np.sqrt(video + 0.02) * grain(random, video.shape)
         return np.ascontiguousarray(np.clip(video, 0, 2), np.float32)
