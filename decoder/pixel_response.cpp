@@ -55,7 +55,8 @@ double saturation_dn(const Calibration& c, const ResponseCurve* curve) {
 
 SampleNoise::SampleNoise(const Calibration& calibration)
     : per_unit_(static_cast<float>(1 / calibration.electrons_per_unit)),
-      one_dn_(static_cast<float>(calibration.gain_e_per_dn / calibration.electrons_per_unit)) {
+      one_dn_(static_cast<float>(calibration.gain_e_per_dn / calibration.electrons_per_unit)),
+      none_(calibration.noise_free) {
     const double read = calibration.read_noise_e / calibration.electrons_per_unit;
     const double quantum = calibration.gain_e_per_dn / calibration.electrons_per_unit;
     constant_ = static_cast<float>(read * read + quantum * quantum / 12);

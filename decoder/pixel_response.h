@@ -27,10 +27,14 @@ class SampleNoise {
     /// Light of one DN.
     [[nodiscard]] float lsb_light() const { return one_dn_; }
 
+    /// True if the calibration says that there is none.
+    [[nodiscard]] bool none() const { return none_; }
+
   private:
     float per_unit_;
     float one_dn_;
     float constant_;
+    bool none_;
 };
 
 /// Conversion of the DN of one pixel to the light of its exposures.

@@ -304,8 +304,8 @@ std::optional<FluxVideo> decode_collaborative(const SplittingTask& task,
         if (x && task.start != nullptr) *task.start = *x;
         return x;
     }
-    const auto patches = [](const CollaborativeOptions& of_block, bool mosaic) {
-        return PatchDenoiser(of_block, mosaic);
+    const auto patches = [&](const CollaborativeOptions& of_block, bool mosaic) {
+        return PatchDenoiser(of_block, mosaic, task.noise_gain);
     };
     return decode_by_splitting(task, options, patches);
 }

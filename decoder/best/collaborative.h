@@ -89,7 +89,8 @@ struct SplittingTask {
     Measurements& measurements;
     const SampleNoise& noise;
     const ProgressCallback& progress;
-    FluxVideo* start = nullptr;  ///< receives the start estimate
+    FluxVideo* start = nullptr;       ///< receives the start estimate
+    FluxVideo* noise_gain = nullptr;  ///< receives that of `filter_groups`, if it was called
 };
 
 /// Decodes one block: the estimate of `decode_motion_tv`, then iterations of denoiser and proximal

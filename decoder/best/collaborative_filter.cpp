@@ -39,13 +39,14 @@ int farthest_slots(const PatchGroups& groups) {
 class Aggregation {
   public:
     Aggregation(const FluxVideo& noisy, const FluxVideo& pilot, const PatchGroups& groups,
-                float sigma, FluxVideo& sum)
+                float sigma, FluxVideo& sum, FluxVideo* window)
         : noisy_(noisy),
           pilot_(pilot),
           groups_(groups),
           sigma_(sigma),
           sum_(sum),
-          weight_(noisy.slots(), noisy.shape()) {}
+          weight_(noisy.slots(), noisy.shape()),
+          window_(window) {}
 
     void run() {
         const ReferenceGrid& grid = groups_.grid;
@@ -72,6 +73,10 @@ class Aggregation {
             const auto weight = std::as_const(weight_).frame(slot);
             const auto value = sum_.frame(slot);
             for (std::size_t i = 0; i < value.size(); ++i) value[i] /= weight[i];
+            if (window_ == nullptr) return;
+            const auto window = window_->frame(slot);
+            const float planes = sum_.shape().planes == 3 ? 3 : 1;  // filtered together
+            for (std::size_t i = 0; i < window.size(); ++i) window[i] /= planes * weight[i];
         });
     }
 
@@ -101,6 +106,7 @@ class Aggregation {
                            .pilot = &pilot_.data()[voxel],
                            .sum = &sum_.data()[voxel],
                            .weight = &weight_.data()[voxel],
+                           .window = window_ == nullptr ? nullptr : &window_->data()[voxel],
                            .cols = shape.cols};
         for (std::size_t k = 0; k < group.size(); ++k)
             frames.patch[k] = static_cast<std::ptrdiff_t>(shape.sites()) * group[k].slots +
@@ -114,15 +120,17 @@ class Aggregation {
     float sigma_;
     FluxVideo& sum_;
     FluxVideo weight_;
+    FluxVideo* window_;
 };
 
 }  // namespace
 
 void filter_groups(const FluxVideo& noisy, const FluxVideo& pilot, const PatchGroups& groups,
-                   float sigma, FluxVideo& filtered) {
+                   float sigma, FluxVideo& filtered, FluxVideo* noise_gain) {
     assert(pilot.voxels() == noisy.voxels() && filtered.voxels() == noisy.voxels());
     std::ranges::fill(filtered.data(), 0.0F);
-    Aggregation aggregation(noisy, pilot, groups, sigma, filtered);
+    if (noise_gain != nullptr) *noise_gain = FluxVideo(noisy.slots(), noisy.shape());
+    Aggregation aggregation(noisy, pilot, groups, sigma, filtered, noise_gain);
     aggregation.run();
     aggregation.divide();
 }

@@ -8,7 +8,9 @@ namespace stipple {
 
 void PatchDenoiser::operator()(const DenoiserInput& input, FluxVideo& result) {
     find_groups(input);
-    filter_groups(input.noisy, input.pilot, groups_, input.sigma, result);
+    const bool last = input.iteration + 1 == options_.iterations;
+    filter_groups(input.noisy, input.pilot, groups_, input.sigma, result,
+                  last ? noise_gain_ : nullptr);
 }
 
 void PatchDenoiser::find_groups(const DenoiserInput& input) {

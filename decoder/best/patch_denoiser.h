@@ -15,8 +15,9 @@ namespace stipple {
 /// of a call: rows, cols >= kPatchSide; the first one is of iteration 0.
 class PatchDenoiser {
   public:
-    PatchDenoiser(const CollaborativeOptions& options, bool mosaic)
-        : options_(options), mosaic_(mosaic) {}
+    /// `noise_gain`, unless it is null, receives that of the last iteration (`filter_groups`).
+    PatchDenoiser(const CollaborativeOptions& options, bool mosaic, FluxVideo* noise_gain = nullptr)
+        : options_(options), mosaic_(mosaic), noise_gain_(noise_gain) {}
 
     void operator()(const DenoiserInput& input, FluxVideo& result);
 
@@ -25,6 +26,7 @@ class PatchDenoiser {
 
     CollaborativeOptions options_;
     bool mosaic_;
+    FluxVideo* noise_gain_;
     std::vector<MotionField> motion_;
     PatchGroups groups_;
 };

@@ -168,6 +168,15 @@ void add(const Group& g, float group_weight, const GroupFrames& group) {
     }
 }
 
+/// Adds the windows alone.
+void add_windows(const GroupFrames& group) {
+    for (const std::ptrdiff_t at : group.patch) {
+        float* to = group.window + at;
+        for (int r = 0; r < kSide; ++r, to += group.cols)
+            for (int c = 0; c < kSide; ++c) to[c] += kWindow[r] * kWindow[c];
+    }
+}
+
 void load_spectra(const GroupFrames& group, Group& noisy, Group& pilot) {
     load(group, group.noisy, noisy);
     load(group, group.pilot, pilot);
@@ -182,6 +191,7 @@ void wiener_filter(const GroupFrames& group, float sigma) {
     const float weight = weight_of(shrink(pilot, sigma, noisy));
     synthesise(noisy);
     add(noisy, weight, group);
+    if (group.window != nullptr) add_windows(group);
 }
 
 constexpr std::size_t kColours = 3;
@@ -233,6 +243,7 @@ void wiener_filter_colours(const ColourGroupFrames& frames, float sigma) {
     for (std::size_t p = 0; p < kColours; ++p) {
         synthesise(noisy[p]);
         add(noisy[p], weight_of(squares), frames[p]);
+        if (frames[p].window != nullptr) add_windows(frames[p]);
     }
 }
 

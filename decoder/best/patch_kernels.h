@@ -24,6 +24,7 @@ struct GroupFrames {
     const float* pilot = nullptr;
     float* sum = nullptr;     ///< receives the weighted values of the filtered patches
     float* weight = nullptr;  ///< receives their weights
+    float* window = nullptr;  ///< receives their windows, unless it is null
     std::ptrdiff_t cols = 0;
     std::array<std::ptrdiff_t, kGroupPatches> patch = {};  ///< offsets, in voxels
 };
@@ -54,7 +55,11 @@ using ColourMatrix = std::array<std::array<float, 3>, 3>;
 /// `noisy` without noise. A voxel becomes the weighted mean over all its patches. `sigma` is the
 /// standard deviation of the noise, equal everywhere. The same bits for any thread count and SIMD
 /// target. Precondition: the videos have one shape, and the groups belong to it.
+///
+/// `noise_gain`, unless it is null, receives for each voxel the number of coefficients of a patch
+/// that the filter has kept, 1 to 576: the sum of the squared factors of a group in one plane, as
+/// the harmonic mean of its groups. It is in proportion to the noise that is left in them.
 void filter_groups(const FluxVideo& noisy, const FluxVideo& pilot, const PatchGroups& groups,
-                   float sigma, FluxVideo& filtered);
+                   float sigma, FluxVideo& filtered, FluxVideo* noise_gain = nullptr);
 
 }  // namespace stipple

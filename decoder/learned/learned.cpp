@@ -36,11 +36,6 @@ void check(const Measurements& measurements, const Refiner& refine) {
                                                 Parameter{"decoder.model", "FILE.safetensors"});
 }
 
-struct Estimates {
-    const FluxVideo& start;  ///< may be the other one
-    FluxVideo& refined;      ///< on entry not yet
-};
-
 /// Where a sample contradicts the refined light more than the estimate, its voxels keep the
 /// estimate: by five standard deviations of its noise, a saturated one at once.
 void keep_contradicted(const Measurements& m, const FluxVideo& estimate, FluxVideo& refined) {
@@ -62,10 +57,8 @@ void keep_contradicted(const Measurements& m, const FluxVideo& estimate, FluxVid
 }
 
 /// False if `progress` has stopped it.
-bool refine_estimate(const SplittingTask& task, const Estimates& estimates, const Refiner& refine,
-                     const ProgressCallback& progress) {
-    FluxVideo& x = estimates.refined;
-    const RefinementInputs inputs(task.measurements, task.noise, x, estimates.start);
+bool refine_estimate(const SplittingTask& task, const RefinementInputs& inputs,
+                     const Refiner& refine, const ProgressCallback& progress, FluxVideo& x) {
     const FrameShape shape = x.shape();
     std::vector<float> seen(kRefinementInputs * shape.pixels());
     std::vector<float> refined(shape.pixels());
@@ -127,11 +120,13 @@ std::optional<FluxVideo> decode_learned(const SplittingTask& task,
                                         const CollaborativeOptions& options,
                                         const Refiner& refine) {
     check(task.measurements, refine);
-    FluxVideo start;
+    FluxVideo start, noise_gain;
     auto x = decode_collaborative(
-        {task.measurements, task.noise, part(task.progress, 0, kBestShare), &start}, options);
-    if (!x || !refine_estimate(task, {start, *x}, refine, part(task.progress, kBestShare, 1)))
-        return {};
+        {task.measurements, task.noise, part(task.progress, 0, kBestShare), &start, &noise_gain},
+        options);
+    if (!x) return {};
+    const RefinementInputs inputs(task.measurements, task.noise, {*x, start, &noise_gain});
+    if (!refine_estimate(task, inputs, refine, part(task.progress, kBestShare, 1), *x)) return {};
     return x;
 }
 
@@ -141,8 +136,9 @@ std::optional<FluxVideo> decode_learned_fast(const SplittingTask& task,
     check(task.measurements, refine);
     auto x = decode_motion_tv(task.measurements, task.noise, options,
                               part(task.progress, 0, kFastShare));
-    if (!x || !refine_estimate(task, {*x, *x}, refine, part(task.progress, kFastShare, 1)))
-        return {};
+    if (!x) return {};
+    const RefinementInputs inputs(task.measurements, task.noise, {*x, *x});
+    if (!refine_estimate(task, inputs, refine, part(task.progress, kFastShare, 1), *x)) return {};
     return x;
 }
 

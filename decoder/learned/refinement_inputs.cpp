@@ -18,6 +18,7 @@ constexpr float kMinOffset = 0.002F;
 constexpr float kMaxOffset = 1e3F;
 constexpr float kOffsetSlots = 32;
 constexpr float kPerLight = 1.0F / 1000;  ///< Var' of the sensor `paper`
+constexpr float kNoiseFreeOffset = 0.5F;
 constexpr float kClip = 2;
 constexpr std::array kSteps{-2, -1, 1, 2};  ///< slots of the neighbours in time
 
@@ -33,19 +34,21 @@ float log2_steps(float value) {
 }  // namespace
 
 RefinementInputs::RefinementInputs(const Measurements& measurements, const SampleNoise& noise,
-                                   const FluxVideo& estimate, const FluxVideo& start)
-    : shape_(estimate.shape()),
-      slots_(estimate.slots()),
-      unit_(kPerLight / noise.per_light()),
-      offset_(std::clamp(unit_ * noise.variance(0) / noise.per_light() / kOffsetSlots, kMinOffset,
-                         kMaxOffset)),
-      dark_input_(clipped(20 * unit_ * std::sqrt(noise.variance(0)))),
-      estimate_(estimate),
-      start_(start),
-      root_(estimate.voxels()),
-      residual_(estimate.voxels()),
-      length_(estimate.voxels()),
-      bound_(estimate.voxels()) {
+                                   const Estimates& estimates)
+    : shape_(estimates.estimate.shape()),
+      slots_(estimates.estimate.slots()),
+      unit_(noise.none() ? 1 : kPerLight / noise.per_light()),
+      offset_(noise.none()
+                  ? kNoiseFreeOffset
+                  : std::clamp(unit_ * noise.variance(0) / noise.per_light() / kOffsetSlots,
+                               kMinOffset, kMaxOffset)),
+      dark_input_(noise.none() ? -1 : clipped(20 * unit_ * std::sqrt(noise.variance(0)))),
+      estimates_(estimates),
+      root_(estimates.estimate.voxels()),
+      residual_(root_.size()),
+      length_(root_.size()),
+      bound_(root_.size()) {
+    const FluxVideo& estimate = estimates.estimate;
     parallel_for(0, slots_, [&](int slot) {
         const auto light = estimate.frame(slot);
         std::ranges::transform(light, &root_[voxel(slot, 0)], [&](float x) { return root_of(x); });
@@ -144,11 +147,21 @@ void RefinementInputs::write_exposures(int slot, int plane, std::span<float> inp
     copy(length_, after, 12);
 }
 
+void RefinementInputs::write_noise_gain(int slot, int plane, std::span<float> to) const {
+    const FluxVideo* const known = estimates_.noise_gain;
+    if (known == nullptr || known->voxels() == 0) {
+        std::ranges::fill(to, -1.0F);
+        return;
+    }
+    const float* gain = &known->data()[voxel(slot, plane)];
+    for (std::size_t i = 0; i < to.size(); ++i) to[i] = log2_steps(gain[i]) / 5;
+}
+
 void RefinementInputs::write(int slot, int plane, std::span<float> inputs) const {
     const std::size_t pixels = shape_.pixels();
     const auto input = [&](int i) { return inputs.subspan(index(i) * pixels, pixels); };
     const float* root = &root_[voxel(slot, plane)];
-    const float* started = &start_.data()[voxel(slot, plane)];
+    const float* started = &estimates_.start.data()[voxel(slot, plane)];
     for (std::size_t i = 0; i < pixels; ++i) {
         inputs[i] = std::min(root[i], kMaxRoot);
         input(1)[i] = clipped(root_of(started[i]) - root[i]);
@@ -156,7 +169,7 @@ void RefinementInputs::write(int slot, int plane, std::span<float> inputs) const
     parallel_for(0, static_cast<int>(kSteps.size()),
                  [&](int i) { write_neighbour(slot, plane, kSteps[index(i)], input(2 + i)); });
     write_exposures(slot, plane, inputs);
-    std::ranges::fill(input(13), 0.0F);
+    write_noise_gain(slot, plane, input(13));
     std::ranges::fill(input(14), dark_input_);
 }
 
@@ -166,8 +179,9 @@ void RefinementInputs::restore(int slot, int plane, std::span<const float> refin
     for (std::size_t i = 0; i < light.size(); ++i) {
         const float root = root_[begin + i];
         const float better = std::max(refined[i] + std::max(root - kMaxRoot, 0.0F), 0.0F);
-        light[i] = std::max(estimate_.data()[begin + i] + (better - root) * (better + root) / unit_,
-                            -offset_ / unit_);
+        light[i] = std::max(
+            estimates_.estimate.data()[begin + i] + (better - root) * (better + root) / unit_,
+            -offset_ / unit_);
     }
 }
 

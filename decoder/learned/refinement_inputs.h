@@ -16,7 +16,7 @@ struct Measurements;
 
 inline constexpr int kRefinementInputs = 15;
 /// The key `inputs` of a network's metadata, of those that this program computes.
-inline constexpr std::string_view kRefinementInputsName = "1";
+inline constexpr std::string_view kRefinementInputsName = "2";
 
 /// An estimate of a block in the domain of the refinement network,
 ///
@@ -24,6 +24,7 @@ inline constexpr std::string_view kRefinementInputsName = "1";
 ///
 /// with the variance Var of a sample without light, its increase Var' per light, and u = 1 / (1000
 /// Var'), so that light has the shot noise that it has in the sensor `paper`, whatever its unit is.
+/// Without noise (Calibration::noise_free) u = 1 and the offset is 0.5, as in `best`.
 /// What the network sees of each voxel of a plane:
 ///
 ///     0       v
@@ -36,8 +37,8 @@ inline constexpr std::string_view kRefinementInputsName = "1";
 ///     8       1 if its sample is saturated, else 0
 ///     9, 10   q of the slots t - 1 and t + 1
 ///     11, 12  l of these
-///     13      0 (in training, for lack of u, log2(1000 Var') / 4)
-///     14      20 u sqrt(Var(0))
+///     13      noise left in the estimate: log2(noise gain of `filter_groups`) / 5; -1 if unknown
+///     14      20 u sqrt(Var(0)); -1 without noise
 ///
 /// At the ends of the block the slot itself takes the place of those that are missing. All values
 /// are clipped to -2..2, but the first to at most `kMaxRoot`.
@@ -45,10 +46,16 @@ class RefinementInputs {
   public:
     static constexpr float kMaxRoot = 4;
 
-    /// `start` may be the estimate itself. Precondition: equal shapes; one sensor; `measurements`,
-    /// `estimate` and `start` outlive this.
+    /// What is known of a block. They outlive the inputs.
+    struct Estimates {
+        const FluxVideo& estimate;
+        const FluxVideo& start;                 ///< may be the estimate
+        const FluxVideo* noise_gain = nullptr;  ///< of the estimate; null or empty: not known
+    };
+
+    /// Precondition: equal shapes; one sensor; `measurements` outlive this.
     RefinementInputs(const Measurements& measurements, const SampleNoise& noise,
-                     const FluxVideo& estimate, const FluxVideo& start);
+                     const Estimates& estimates);
 
     /// Writes the inputs of a plane, order (input, row, col). The same bits for any thread count.
     void write(int slot, int plane, std::span<float> inputs) const;
@@ -69,6 +76,7 @@ class RefinementInputs {
     [[nodiscard]] std::size_t voxel(int slot, int plane) const;
     [[nodiscard]] Point follow(Point from, int slot, int step) const;
     void write_neighbour(int slot, int plane, int steps, std::span<float> to) const;
+    void write_noise_gain(int slot, int plane, std::span<float> to) const;
     void write_exposures(int slot, int plane, std::span<float> inputs) const;
 
     FrameShape shape_;
@@ -76,8 +84,7 @@ class RefinementInputs {
     float unit_;  ///< u
     float offset_;
     float dark_input_;
-    const FluxVideo& estimate_;
-    const FluxVideo& start_;
+    Estimates estimates_;
     std::vector<float> root_;          ///< v
     std::vector<float> residual_;      ///< q, clipped
     std::vector<float> length_;        ///< l

@@ -51,6 +51,21 @@ TEST(CollaborativeFilterTest, WithAPerfectPilotLittleNoiseIsLeft) {
         16.73);
 }
 
+TEST(CollaborativeFilterTest, CountsTheCoefficientsThatItKeeps) {
+    constexpr float kAll = 6 * 6 * 16;  // of a group
+    for (const int planes : {1, 2, 3}) {
+        const FrameShape shape{40, 31, planes};
+        const auto expect_gain = [&](const FluxVideo& video, float sigma, float kept) {
+            const PatchGroups groups = match_patches(video, {shape, 5, 2}, {}, {});
+            FluxVideo filtered(4, shape), gain;
+            filter_groups(video, video, groups, sigma, filtered, &gain);
+            for (const float value : gain.data()) ASSERT_NEAR(value, kept, 1e-3F * kept) << planes;
+        };
+        expect_gain(random_video(4, shape, 1), 1e-6F, kAll);
+        expect_gain(flat_video(4, shape, 0.7F), 1e-3F, 1);  // the mean
+    }
+}
+
 TEST(CollaborativeFilterTest, TheSameBitsForAnyNumberOfThreads) {
     const FluxVideo video = random_video(30, kShape, 3);  // several bands of slots too
     const PatchGroups groups =

@@ -160,7 +160,7 @@ class WeightsTest : public testing::Test {
 };
 
 TEST_F(WeightsTest, AreTheRefiner) {
-    const std::string path = file(kRefinementInputs, "1");
+    const std::string path = file(kRefinementInputs, std::string(kRefinementInputsName));
     const RefinementNetwork network = RefinementNetwork::read(path);
     std::vector<float> seen = random_values(kRefinementInputs * std::size_t{8} * 16, 0, 1, 3);
     seen[14 * std::size_t{8} * 16] = 0.2F;
@@ -177,9 +177,9 @@ TEST_F(WeightsTest, AreTheRefiner) {
 
 TEST_F(WeightsTest, MustBeMadeForTheseInputs) {
     expect_parts(
-        message_of<InputError>([&] { return refinement_of(file(kRefinementInputs, "2")); }),
-        {"net.safetensors: ", "15 inputs of version \"2\"", "15 of version \"1\""});
-    EXPECT_THROW((void)refinement_of(file(3, "1")), InputError);
+        message_of<InputError>([&] { return refinement_of(file(kRefinementInputs, "1")); }),
+        {"net.safetensors: ", "15 inputs of version \"1\"", "15 of version \"2\""});
+    EXPECT_THROW((void)refinement_of(file(3, std::string(kRefinementInputsName))), InputError);
 }
 
 }  // namespace

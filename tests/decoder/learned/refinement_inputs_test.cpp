@@ -25,7 +25,7 @@ class Inputs {
     Inputs(const Measurements& m, const FluxVideo& estimate, const FluxVideo& start, int plane = 0,
            const SampleNoise& noise = paper_noise())
         : shape_(estimate.shape()) {
-        const RefinementInputs inputs(m, noise, estimate, start);
+        const RefinementInputs inputs(m, noise, {estimate, start});
         for (int slot = 0; slot < estimate.slots(); ++slot) {
             slots_.emplace_back(kRefinementInputs * shape_.pixels());
             inputs.write(slot, plane, slots_.back());
@@ -136,11 +136,37 @@ TEST(RefinementInputsTest, FindsTheNeighboursAlongMotion) {
     EXPECT_EQ(inputs.at(5, 4, 20, 20), 0);
 }
 
+TEST(RefinementInputsTest, WithoutNoiseTheUnitOfLightStays) {
+    Calibration calibration = calibration_of({});
+    calibration.noise_free = true;
+    calibration.electrons_per_unit = 1e6;
+    const FluxVideo x = flat_video(2, kSite, 0.2F);
+    const Measurements m = hand_made(2, kSite, {{.open_slots = 0b11, .light = 0.5F}});
+    const Inputs inputs(m, x, x, 0, SampleNoise(calibration));
+    const float root = std::sqrt(0.2F + 0.5F);
+    EXPECT_FLOAT_EQ(inputs.at(0, 0, 0, 0), root);
+    EXPECT_NEAR(inputs.at(6, 0, 0, 0), 2 * 0.05F / root, 1e-6);
+    EXPECT_EQ(inputs.at(14, 0, 0, 0), -1);
+}
+
 TEST(RefinementInputsTest, TellsOfTheNoise) {
     const FluxVideo x = flat_video(1, kSite, 0.2F);
     const Inputs paper(nothing(x), x, x);
-    EXPECT_EQ(paper.at(13, 0, 0, 0), 0);
     EXPECT_NEAR(paper.at(14, 0, 0, 0), 20 * std::sqrt(paper_noise().variance(0)), 1e-6);
+}
+
+TEST(RefinementInputsTest, HasTheNoiseLeftInTheEstimateIfItIsKnown) {
+    const FluxVideo x = flat_video(2, kSite, 0.2F);
+    EXPECT_EQ(Inputs(nothing(x), x, x).at(13, 1, 0, 0), -1);
+    FluxVideo gain = flat_video(2, kSite, 1);
+    gain.data()[1] = 576;
+    const Measurements m = nothing(x);
+    const RefinementInputs inputs(m, paper_noise(), {x, x, &gain});
+    std::vector<float> seen(kRefinementInputs);
+    inputs.write(0, 0, seen);
+    EXPECT_EQ(seen[13], 0);
+    inputs.write(1, 0, seen);
+    EXPECT_NEAR(seen[13], std::log2(576.0F) / 5, 1e-6);
 }
 
 TEST(RefinementInputsTest, DoNotDependOnTheUnitOfLight) {
@@ -165,7 +191,7 @@ TEST(RefinementInputsTest, RestoresTheLightAlsoBeyondTheLargestRoot) {
     x.data()[2] = 0;
     const Inputs seen(nothing(x), x, x);
     EXPECT_EQ(seen.at(0, 1, 0, 0), RefinementInputs::kMaxRoot);
-    const RefinementInputs inputs(nothing(x), paper_noise(), x, x);
+    const RefinementInputs inputs(nothing(x), paper_noise(), {x, x});
     for (int slot = 0; slot < 3; ++slot) {
         float light = -1;
         const float root = seen.at(0, slot, 0, 0);
