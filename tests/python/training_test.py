@@ -3,7 +3,10 @@
 import os
 import sys
 import unittest
+from importlib.machinery import SourceFileLoader
+from importlib.util import find_spec
 from pathlib import Path
+from unittest import mock
 
 import numpy as np
 import stipple
@@ -34,6 +37,38 @@ class FramesTest(unittest.TestCase):
                 hashes = frame_hashes(stipple.load(clip, luminance=True))
                 self.assertEqual(least_distance(hashes, hashes[:1]), 0)
                 self.assertGreater(least_distance(hashes, trained), 8)
+
+
+class Brightening:
+    """Scenes of even light that rises with time."""
+
+    def clip(self, random, slots, side):
+        return np.repeat(np.linspace(0.1, 0.2, slots, dtype=np.float32), side * side).reshape(slots, side, side)
+
+
+@unittest.skipUnless(all(map(find_spec, ("torch", "scipy", "PIL"))), "python3-torch, -scipy or -pil is not installed")
+class ItemsTest(unittest.TestCase):
+    @classmethod
+    def setUpClass(cls):
+        cls.train = SourceFileLoader("train", str(TRAINING.parent / "scripts" / "train")).load_module()
+        cls.train.SIDE = 24
+
+    def expect_light_of_inputs(self, item):
+        """Light by the first input is the truth, in its unit: of each frame, and of slots amid the others."""
+        inputs = item["inputs"].astype(np.float64)
+        light = (inputs[:, 0] ** 2 - self.train.offset_of(inputs)).mean((1, 2))
+        inner = slice(6, -6) if len(light) == self.train.SLOTS else slice(None)
+        np.testing.assert_allclose(light[inner], item["truth"].mean((1, 2))[inner], rtol=0.06)
+
+    def test_the_truth_has_the_unit_of_the_inputs(self):
+        for schedule in self.train.SCHEDULES:
+            settings = {"SCHEDULES": {schedule: 1}, "SENSORS": {"paper": 1}, "NOISE_FREE": 0, "LIGHT": (0.8, 1.2)}
+            with self.subTest(schedule), mock.patch.multiple(self.train, **settings):
+                self.expect_light_of_inputs(self.train.make_item(Brightening(), 7))
+
+    def test_also_without_noise(self):
+        with mock.patch.object(self.train, "NOISE_FREE", 1):
+            self.expect_light_of_inputs(self.train.make_item(Brightening(), 7))
 
 
 if __name__ == "__main__":
