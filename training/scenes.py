@@ -115,7 +115,13 @@ class Scenes:
         return scene[:, top:top + side, left:left + side]
 
     def panorama(self, random, slots, side):
-        return self.moving(random, slots, side, self.panoramas[random.integers(len(self.panoramas))])
+        source = self.panoramas[random.integers(len(self.panoramas))]
+        if random.random() < 0.5:  # a texture of low contrast on it
+            texture = drawing(random)
+            repeats = [-(-size // own) for size, own in zip(source.shape, texture.shape)]
+            texture = np.tile(texture - texture.mean(), repeats)[:source.shape[0], :source.shape[1]]
+            source = source * np.maximum(1 + random.uniform(0.1, 1) * texture, 0)
+        return self.moving(random, slots, side, source)
 
     def drawing(self, random, slots, side):
         return self.moving(random, slots, side, drawing(random))
