@@ -39,14 +39,14 @@ int farthest_slots(const PatchGroups& groups) {
 class Aggregation {
   public:
     Aggregation(const FluxVideo& noisy, const FluxVideo& pilot, const PatchGroups& groups,
-                float sigma, FluxVideo& sum, FluxVideo* window)
+                float sigma, const FilteredVideo& result)
         : noisy_(noisy),
           pilot_(pilot),
           groups_(groups),
           sigma_(sigma),
-          sum_(sum),
+          sum_(result.filtered),
           weight_(noisy.slots(), noisy.shape()),
-          window_(window) {}
+          window_(result.noise_gain) {}
 
     void run() {
         const ReferenceGrid& grid = groups_.grid;
@@ -126,11 +126,11 @@ class Aggregation {
 }  // namespace
 
 void filter_groups(const FluxVideo& noisy, const FluxVideo& pilot, const PatchGroups& groups,
-                   float sigma, FluxVideo& filtered, FluxVideo* noise_gain) {
-    assert(pilot.voxels() == noisy.voxels() && filtered.voxels() == noisy.voxels());
-    std::ranges::fill(filtered.data(), 0.0F);
-    if (noise_gain != nullptr) *noise_gain = FluxVideo(noisy.slots(), noisy.shape());
-    Aggregation aggregation(noisy, pilot, groups, sigma, filtered, noise_gain);
+                   float sigma, const FilteredVideo& result) {
+    assert(pilot.voxels() == noisy.voxels() && result.filtered.voxels() == noisy.voxels());
+    std::ranges::fill(result.filtered.data(), 0.0F);
+    if (result.noise_gain != nullptr) *result.noise_gain = FluxVideo(noisy.slots(), noisy.shape());
+    Aggregation aggregation(noisy, pilot, groups, sigma, result);
     aggregation.run();
     aggregation.divide();
 }

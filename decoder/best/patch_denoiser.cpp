@@ -9,8 +9,8 @@ namespace stipple {
 void PatchDenoiser::operator()(const DenoiserInput& input, FluxVideo& result) {
     find_groups(input);
     const bool last = input.iteration + 1 == options_.iterations;
-    filter_groups(input.noisy, input.pilot, groups_, input.sigma, result,
-                  last ? noise_gain_ : nullptr);
+    filter_groups(input.noisy, input.pilot, groups_, input.sigma,
+                  {result, last ? noise_gain_ : nullptr});
 }
 
 void PatchDenoiser::find_groups(const DenoiserInput& input) {

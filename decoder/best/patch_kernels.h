@@ -50,16 +50,21 @@ using ColourMatrix = std::array<std::array<float, 3>, 3>;
 /// operations only. Precondition: symmetric, finite.
 [[nodiscard]] ColourMatrix principal_colour_axes(const ColourMatrix& covariance) noexcept;
 
+/// What `filter_groups` writes.
+struct FilteredVideo {
+    FluxVideo& filtered;
+    /// Unless it is null, receives for each voxel the number of coefficients of a patch that the
+    /// filter has kept, 1 to 576: the sum of the squared factors of a group in one plane, as the
+    /// harmonic mean of its groups. It is in proportion to the noise that is left in them.
+    FluxVideo* noise_gain = nullptr;
+};
+
 /// Filters all groups of similar patches of `noisy` by the Wiener filter of `filter_group`; three
 /// planes are filtered together, other numbers of planes one by one. `pilot` is an estimate of
 /// `noisy` without noise. A voxel becomes the weighted mean over all its patches. `sigma` is the
 /// standard deviation of the noise, equal everywhere. The same bits for any thread count and SIMD
 /// target. Precondition: the videos have one shape, and the groups belong to it.
-///
-/// `noise_gain`, unless it is null, receives for each voxel the number of coefficients of a patch
-/// that the filter has kept, 1 to 576: the sum of the squared factors of a group in one plane, as
-/// the harmonic mean of its groups. It is in proportion to the noise that is left in them.
 void filter_groups(const FluxVideo& noisy, const FluxVideo& pilot, const PatchGroups& groups,
-                   float sigma, FluxVideo& filtered, FluxVideo* noise_gain = nullptr);
+                   float sigma, const FilteredVideo& result);
 
 }  // namespace stipple

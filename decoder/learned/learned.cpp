@@ -22,15 +22,12 @@ constexpr double kFastShare = 0.5;  // of all work; for the progress
 constexpr double kBestShare = 0.85;
 constexpr float kMaxSigmas = 5;
 constexpr std::size_t kDarkInput = 14;
-constexpr float kMinDark = 0.19F;  // 20 u sqrt(Var(0)) of sensors that the weights are for
-constexpr float kMaxDark = 0.31F;
-constexpr float kMaxValue = 1e9F;  // its square, light, is far from the largest float
+constexpr float kMinDark = 0.009F;  // noise of 0.45 electrons, the least in training
+constexpr float kMaxDark = 1.25F;   // of 62 electrons, the most
+constexpr float kMaxValue = 1e9F;   // its square, light, is far from the largest float
 
 /// \throws InputError as decode_learned, before any work.
-void check(const Measurements& measurements, const Refiner& refine) {
-    if (measurements.mosaic)
-        throw InputError("decoding method",
-                         "learned and learned_fast do not decode mosaics of colours; take best");
+void check(const Refiner& refine) {
     if (!refine)
         throw InputError("decoding method", "learned and learned_fast need a file of weights, " +
                                                 Parameter{"decoder.model", "FILE.safetensors"});
@@ -108,7 +105,8 @@ Refiner refinement_of(const std::string& file) {
                               kRefinementInputs, kRefinementInputsName));
     return [network](const RefinerInput& input, std::span<float> refined) {
         const float dark = input.inputs[kDarkInput * refined.size()];
-        if (dark < kMinDark || dark > kMaxDark) {
+        const bool without_noise = dark < 0;
+        if (!without_noise && (dark < kMinDark || dark > kMaxDark)) {
             std::ranges::copy(input.inputs.first(refined.size()), refined.begin());
             return;
         }
@@ -119,7 +117,7 @@ Refiner refinement_of(const std::string& file) {
 std::optional<FluxVideo> decode_learned(const SplittingTask& task,
                                         const CollaborativeOptions& options,
                                         const Refiner& refine) {
-    check(task.measurements, refine);
+    check(refine);
     FluxVideo start, noise_gain;
     auto x = decode_collaborative(
         {task.measurements, task.noise, part(task.progress, 0, kBestShare), &start, &noise_gain},
@@ -133,7 +131,7 @@ std::optional<FluxVideo> decode_learned(const SplittingTask& task,
 std::optional<FluxVideo> decode_learned_fast(const SplittingTask& task,
                                              const MotionTvOptions& options,
                                              const Refiner& refine) {
-    check(task.measurements, refine);
+    check(refine);
     auto x = decode_motion_tv(task.measurements, task.noise, options,
                               part(task.progress, 0, kFastShare));
     if (!x) return {};

@@ -34,16 +34,16 @@ struct LearnedOptions {
 void read_options(Config& config, LearnedOptions& options);
 
 /// The refiner of a file of weights: RefinementNetwork, whose metadata has `inputs` =
-/// kRefinementInputsName. It keeps the estimate where the variance without light is not that of 9.5
-/// to 15.5 electrons in the scale of light (refinement_inputs.h), for which it is not trained.
-/// \throws InputError as RefinementNetwork::read, and if the network is made
-/// for other inputs.
+/// kRefinementInputsName. It keeps the estimate where a sample without light has less noise than
+/// 0.45 or more than 62 electrons in the scale of light (refinement_inputs.h), for which it is not
+/// trained, unless there is none (SampleNoise::none). \throws InputError as
+/// RefinementNetwork::read, and if the network is made for other inputs.
 [[nodiscard]] Refiner refinement_of(const std::string& file);
 
 /// The estimate of `best`, refined: an error of it in the square root of light is predicted from
 /// the estimate, its neighbours along motion and the samples, and taken away. Returns nothing if
 /// the progress has stopped it. \throws InputError without a refiner, and if a value of its result
-/// is not finite; what it throws. Precondition: one sensor, no mosaic.
+/// is not finite; what it throws. Precondition: one sensor.
 [[nodiscard]] std::optional<FluxVideo> decode_learned(const SplittingTask& task,
                                                       const CollaborativeOptions& options,
                                                       const Refiner& refine);

@@ -13,6 +13,7 @@
 #include "apps/arguments/common_options.h"
 #include "core/config.h"
 #include "core/error.h"
+#include "session/decode_setup.h"
 #include "tests/bench/sci/sci_trial.h"
 
 namespace stipple {
@@ -66,8 +67,7 @@ struct Column {
 
 Column run_method(const std::string& name, const std::string& kind, const Arguments& arguments,
                   const std::map<std::string, FluxVideo>& clips) {
-    Config config(arguments.settings);
-    const DecodeOptions options = read_decode_options(decode_method_from_name(name), config);
+    const DecodeOptions options = read_decode_setup(name, Config(arguments.settings)).options;
     Column column{.method = name, .masks = kind, .psnr_db = {}};
     const auto begin = std::chrono::steady_clock::now();
     for (const auto& [clip, video] : clips) {

@@ -32,7 +32,7 @@ TEST(CollaborativeFilterTest, WithoutNoiseNothingChanges) {
     const FluxVideo video = random_video(4, {40, 31, 3}, 1);
     const PatchGroups groups = match_patches(video, {video.shape(), 5, 2}, {}, {});
     FluxVideo filtered(4, video.shape());
-    filter_groups(video, video, groups, 0, filtered);
+    filter_groups(video, video, groups, 0, {filtered});
     for (std::size_t i = 0; i < video.voxels(); ++i)
         EXPECT_NEAR(filtered.data()[i], video.data()[i], 1e-5F);
 }
@@ -43,7 +43,7 @@ TEST(CollaborativeFilterTest, WithAPerfectPilotLittleNoiseIsLeft) {
     const FluxVideo seen = noisy(video, kSigma);
     const PatchGroups groups = match_patches(video, {kShape, 5, 0}, {}, {});
     FluxVideo filtered(6, kShape);
-    filter_groups(seen, video, groups, kSigma, filtered);
+    filter_groups(seen, video, groups, kSigma, {filtered});
     // Stripes have some ten coefficients of 576 that are not 0, and every voxel is in many groups.
     expect_quality(
         "filtered",
@@ -58,7 +58,7 @@ TEST(CollaborativeFilterTest, CountsTheCoefficientsThatItKeeps) {
         const auto expect_gain = [&](const FluxVideo& video, float sigma, float kept) {
             const PatchGroups groups = match_patches(video, {shape, 5, 2}, {}, {});
             FluxVideo filtered(4, shape), gain;
-            filter_groups(video, video, groups, sigma, filtered, &gain);
+            filter_groups(video, video, groups, sigma, {filtered, &gain});
             for (const float value : gain.data()) ASSERT_NEAR(value, kept, 1e-3F * kept) << planes;
         };
         expect_gain(random_video(4, shape, 1), 1e-6F, kAll);
@@ -73,7 +73,7 @@ TEST(CollaborativeFilterTest, TheSameBitsForAnyNumberOfThreads) {
     const auto filter = [&](int threads) {
         const ThreadLimit limit(threads);
         FluxVideo filtered(video.slots(), kShape);
-        filter_groups(video, video, groups, 0.3F, filtered);
+        filter_groups(video, video, groups, 0.3F, {filtered});
         return std::vector<float>(filtered.data().begin(), filtered.data().end());
     };
     const auto one = filter(1);

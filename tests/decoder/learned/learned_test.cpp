@@ -124,17 +124,34 @@ TEST(LearnedTest, WhatTheRefinerThrowsEndsIt) {
             {"refiner: ", "slot 0", "finite"});
 }
 
-TEST(LearnedTest, NeedsWeightsAndRefusesMosaics) {
+TEST(LearnedTest, EachPlaneOfAMosaicIsRefined) {
+    const FrameShape shape{.rows = 24, .cols = 28, .planes = 3};
+    const FluxVideo video = moving_bar(shape);
+    const Recorded recorded =
+        record_mosaic(video, ColourFilter::kRggb,
+                      random_schedule(shape.rows, shape.cols, kPaperExposureSlots, 1));
+    const auto samples_of = [&] {
+        return collect_measurements(recorded.header, recorded.packets, whole(video));
+    };
+    CollaborativeOptions options;
+    options.mosaic.iterations = 4;
+    Measurements for_best = samples_of(), for_learned = samples_of();
+    int planes = 0;
+    const auto count = [&](const RefinerInput& input, std::span<float> refined) {
+        keep(input, refined);
+        ++planes;
+    };
+    expect_near(*decode_learned({for_learned, paper_noise(), kGoOn}, options, count),
+                *decode_collaborative(for_best, paper_noise(), options));
+    EXPECT_EQ(planes, 3 * video.slots());
+}
+
+TEST(LearnedTest, NeedsWeights) {
     Measurements m = samples();
     EXPECT_NE(message_of<InputError>([&] {
                   return decode_learned({m, paper_noise(), kGoOn}, {}, {});
               }).find("decoder.model"),
               std::string::npos);
-    m.mosaic = true;
-    expect_parts(message_of<InputError>([&] {
-                     return decode_learned_fast({m, paper_noise(), kGoOn}, {}, keep);
-                 }),
-                 {"mosaic", "best"});
 }
 
 TEST(LearnedTest, StopsWhenToldTo) {
@@ -168,11 +185,15 @@ TEST_F(WeightsTest, AreTheRefiner) {
     network.refine(seen, 8, 16, expected);
     refinement_of(path)({seen, 8, 16}, refined);
     EXPECT_EQ(refined, expected);
-    for (const float other : {0.02F, 1.2F}) {  // no read noise that the weights are for
+    for (const float other : {0.002F, 1.3F}) {  // no read noise that the weights are for
         seen[14 * std::size_t{8} * 16] = other;
         refinement_of(path)({seen, 8, 16}, refined);
         EXPECT_TRUE(std::ranges::equal(refined, std::span(seen).first(refined.size())));
     }
+    seen[14 * std::size_t{8} * 16] = -1;  // none
+    network.refine(seen, 8, 16, expected);
+    refinement_of(path)({seen, 8, 16}, refined);
+    EXPECT_EQ(refined, expected);
 }
 
 TEST_F(WeightsTest, MustBeMadeForTheseInputs) {
