@@ -10,9 +10,12 @@
 #include "core/config.h"
 #include "core/error.h"
 #include "core/index.h"
+#include "core/parallel.h"
+#include "decoder/fast/box_blur.h"
 #include "decoder/learned/refinement_inputs.h"
 #include "decoder/learned/refinement_network.h"
 #include "decoder/measurements.h"
+#include "decoder/pixel_response.h"
 #include "decoder/sampling_operator.h"
 
 namespace stipple {
@@ -21,6 +24,9 @@ namespace {
 constexpr double kFastShare = 0.5;  // of all work; for the progress
 constexpr double kBestShare = 0.85;
 constexpr float kMaxSigmas = 5;
+constexpr float kTrustedGain = 110;   // coefficients of a patch, of 576
+constexpr float kFirstExcess = 0.5F;  // of squared residuals: all of the refinement
+constexpr float kLastExcess = 0.8F;   // none of it
 constexpr std::size_t kDarkInput = 14;
 constexpr float kMinDark = 0.009F;  // noise of 0.45 electrons, the least in training
 constexpr float kMaxDark = 1.25F;   // of 62 electrons, the most
@@ -53,9 +59,56 @@ void keep_contradicted(const Measurements& m, const FluxVideo& estimate, FluxVid
         if (after[i] > 0) refined.data()[i] = estimate.data()[i];
 }
 
+/// Squared residuals of the samples in the estimate x, over their variances, in all their voxels; 0
+/// of saturated ones. `known`: 1 where there is one.
+std::vector<float> squared_residuals(const Measurements& m, const FluxVideo& x,
+                                     std::vector<float>& known) {
+    std::vector<float> squares(m.voxels());
+    sample(m, x.data(), squares);
+    for (std::size_t i = 0; i < m.voxels(); ++i) {
+        known[i] =
+            (m.state[i] & Measurements::kLast) != 0 && (m.state[i] & Measurements::kSaturated) == 0
+                ? 1.0F
+                : 0.0F;
+        const float lack = m.sum[i] - squares[i];
+        squares[i] = known[i] > 0 ? lack * lack / m.variance[i] : 0;
+    }
+    spread(m, squares, squares);
+    spread(m, known, known);
+    return squares;
+}
+
+/// Where the filter of `best` has averaged so much that its estimate can be trusted, and the
+/// refined light explains the samples around it less well than their noise allows, and less well
+/// than the estimate does, the light returns to the estimate: still texture that the network does
+/// not know.
+void keep_unexplained(const Measurements& m, const RefinementInputs::Estimates& estimates,
+                      FluxVideo& refined) {
+    std::vector<float> known(m.voxels());
+    std::vector<float> before = squared_residuals(m, estimates.estimate, known);
+    std::vector<float> after = squared_residuals(m, refined, known);
+    const auto estimate = estimates.estimate.data();
+    const auto gain = estimates.noise_gain->data();
+    const std::size_t pixels = m.shape.pixels();
+    parallel_for(0, m.slots * m.shape.planes, [&](int plane) {
+        const std::size_t begin = index(plane) * pixels;
+        for (auto* values : {&known, &before, &after})
+            for (int twice = 0; twice < 2; ++twice)  // about a hundred samples
+                box_blur(m.shape, std::span(*values).subspan(begin, pixels));
+        for (std::size_t i = begin; i < begin + pixels; ++i) {
+            if (gain[i] > kTrustedGain || known[i] <= 0) continue;
+            const float ratio = after[i] / std::max(before[i], known[i]);
+            const float excess = (ratio - 1) * std::sqrt(known[i]);
+            const float back = (excess - kFirstExcess) / (kLastExcess - kFirstExcess);
+            refined.data()[i] += std::clamp(back, 0.0F, 1.0F) * (estimate[i] - refined.data()[i]);
+        }
+    });
+}
+
 /// False if `progress` has stopped it.
-bool refine_estimate(const SplittingTask& task, const RefinementInputs& inputs,
+bool refine_estimate(const SplittingTask& task, const RefinementInputs::Estimates& estimates,
                      const Refiner& refine, const ProgressCallback& progress, FluxVideo& x) {
+    const RefinementInputs inputs(task.measurements, task.noise, estimates);
     const FrameShape shape = x.shape();
     std::vector<float> seen(kRefinementInputs * shape.pixels());
     std::vector<float> refined(shape.pixels());
@@ -75,6 +128,8 @@ bool refine_estimate(const SplittingTask& task, const RefinementInputs& inputs,
         if (!progress(static_cast<double>(slot + 1) / x.slots())) return false;
     }
     keep_contradicted(task.measurements, x, result);
+    if (!task.noise.none() && estimates.knows_noise_gain())
+        keep_unexplained(task.measurements, estimates, result);
     x = std::move(result);
     return true;
 }
@@ -123,8 +178,9 @@ std::optional<FluxVideo> decode_learned(const SplittingTask& task,
         {task.measurements, task.noise, part(task.progress, 0, kBestShare), &start, &noise_gain},
         options);
     if (!x) return {};
-    const RefinementInputs inputs(task.measurements, task.noise, {*x, start, &noise_gain});
-    if (!refine_estimate(task, inputs, refine, part(task.progress, kBestShare, 1), *x)) return {};
+    const RefinementInputs::Estimates estimates{*x, start, &noise_gain};
+    if (!refine_estimate(task, estimates, refine, part(task.progress, kBestShare, 1), *x))
+        return {};
     return x;
 }
 
@@ -135,8 +191,7 @@ std::optional<FluxVideo> decode_learned_fast(const SplittingTask& task,
     auto x = decode_motion_tv(task.measurements, task.noise, options,
                               part(task.progress, 0, kFastShare));
     if (!x) return {};
-    const RefinementInputs inputs(task.measurements, task.noise, {*x, *x});
-    if (!refine_estimate(task, inputs, refine, part(task.progress, kFastShare, 1), *x)) return {};
+    if (!refine_estimate(task, {*x, *x}, refine, part(task.progress, kFastShare, 1), *x)) return {};
     return x;
 }
 

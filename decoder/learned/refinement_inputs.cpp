@@ -148,12 +148,11 @@ void RefinementInputs::write_exposures(int slot, int plane, std::span<float> inp
 }
 
 void RefinementInputs::write_noise_gain(int slot, int plane, std::span<float> to) const {
-    const FluxVideo* const known = estimates_.noise_gain;
-    if (known == nullptr || known->voxels() == 0) {
+    if (!estimates_.knows_noise_gain()) {
         std::ranges::fill(to, -1.0F);
         return;
     }
-    const float* gain = &known->data()[voxel(slot, plane)];
+    const float* gain = &estimates_.noise_gain->data()[voxel(slot, plane)];
     for (std::size_t i = 0; i < to.size(); ++i) to[i] = log2_steps(gain[i]) / 5;
 }
 

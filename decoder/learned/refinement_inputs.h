@@ -51,6 +51,9 @@ class RefinementInputs {
         const FluxVideo& estimate;
         const FluxVideo& start;                 ///< may be the estimate
         const FluxVideo* noise_gain = nullptr;  ///< of the estimate; null or empty: not known
+        [[nodiscard]] bool knows_noise_gain() const {
+            return noise_gain != nullptr && noise_gain->voxels() > 0;
+        }
     };
 
     /// Precondition: equal shapes; one sensor; `measurements` outlive this.

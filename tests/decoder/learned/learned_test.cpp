@@ -124,6 +124,27 @@ TEST(LearnedTest, WhatTheRefinerThrowsEndsIt) {
             {"refiner: ", "slot 0", "finite"});
 }
 
+TEST(LearnedTest, StillTextureReturnsWhereTheSamplesAroundExplainLess) {
+    // A change that no sample contradicts alone: by a half to three standard deviations.
+    const FluxVideo video = flat_video(16, kShape, 0.15F);
+    const auto schedule = random_schedule(kShape.rows, kShape.cols, kPaperExposureSlots, 1);
+    const auto light = [&](float change) {
+        Measurements m = measure(video, schedule);
+        return *decode_learned({m, paper_noise(), kGoOn}, kShort,
+                               [&](const RefinerInput& input, std::span<float> refined) {
+                                   keep(input, refined);
+                                   for (float& root : refined) root += change;
+                               });
+    };
+    const FluxVideo estimate = light(0), little = light(0.002F), much = light(0.015F);
+    int changed = 0;
+    for (std::size_t i = 0; i < estimate.voxels(); ++i) {
+        EXPECT_GT(little.data()[i], estimate.data()[i]);
+        if (much.data()[i] > estimate.data()[i] + 1e-3F) ++changed;
+    }
+    EXPECT_LT(changed, static_cast<int>(estimate.voxels()) / 20);
+}
+
 TEST(LearnedTest, EachPlaneOfAMosaicIsRefined) {
     const FrameShape shape{.rows = 24, .cols = 28, .planes = 3};
     const FluxVideo video = moving_bar(shape);
