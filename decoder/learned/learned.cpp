@@ -27,6 +27,7 @@ constexpr float kMaxSigmas = 5;
 constexpr float kTrustedGain = 110;   // coefficients of a patch, of 576
 constexpr float kFirstExcess = 0.5F;  // of squared residuals: all of the refinement
 constexpr float kLastExcess = 0.8F;   // none of it
+constexpr float kMaxSquare = 1e6F;    // of a residual over its noise, which may be nothing
 constexpr std::size_t kDarkInput = 14;
 constexpr float kMinDark = 0.009F;  // noise of 0.45 electrons, the least in training
 constexpr float kMaxDark = 1.25F;   // of 62 electrons, the most
@@ -71,7 +72,8 @@ std::vector<float> squared_residuals(const Measurements& m, const FluxVideo& x,
                 ? 1.0F
                 : 0.0F;
         const float lack = m.sum[i] - squares[i];
-        squares[i] = known[i] > 0 ? lack * lack / m.variance[i] : 0;
+        // In this order the minimum is a number even if the quotient is none.
+        squares[i] = known[i] > 0 ? std::min(kMaxSquare, lack * lack / m.variance[i]) : 0;
     }
     spread(m, squares, squares);
     spread(m, known, known);
