@@ -60,23 +60,30 @@ void keep_contradicted(const Measurements& m, const FluxVideo& estimate, FluxVid
         if (after[i] > 0) refined.data()[i] = estimate.data()[i];
 }
 
-/// Squared residuals of the samples in the estimate x, over their variances, in all their voxels; 0
-/// of saturated ones. `known`: 1 where there is one.
-std::vector<float> squared_residuals(const Measurements& m, const FluxVideo& x,
-                                     std::vector<float>& known) {
+/// In all voxels of a sample 1, of a saturated one and without any 0.
+std::vector<float> exact_samples(const Measurements& m) {
+    std::vector<float> known(m.voxels());
+    std::ranges::transform(m.state, known.begin(), [](std::uint8_t state) {
+        return (state & (Measurements::kLast | Measurements::kSaturated)) == Measurements::kLast
+                   ? 1.0F
+                   : 0.0F;
+    });
+    spread(m, known, known);
+    return known;
+}
+
+/// In all voxels of such a sample its squared residual in the estimate x, over its variance.
+std::vector<float> squared_residuals(const Measurements& m, const FluxVideo& x) {
     std::vector<float> squares(m.voxels());
     sample(m, x.data(), squares);
     for (std::size_t i = 0; i < m.voxels(); ++i) {
-        known[i] =
-            (m.state[i] & Measurements::kLast) != 0 && (m.state[i] & Measurements::kSaturated) == 0
-                ? 1.0F
-                : 0.0F;
         const float lack = m.sum[i] - squares[i];
         // In this order the minimum is a number even if the quotient is none.
-        squares[i] = known[i] > 0 ? std::min(kMaxSquare, lack * lack / m.variance[i]) : 0;
+        squares[i] = (m.state[i] & Measurements::kSaturated) == 0
+                         ? std::min(kMaxSquare, lack * lack / m.variance[i])
+                         : 0;
     }
     spread(m, squares, squares);
-    spread(m, known, known);
     return squares;
 }
 
@@ -86,9 +93,9 @@ std::vector<float> squared_residuals(const Measurements& m, const FluxVideo& x,
 /// not know.
 void keep_unexplained(const Measurements& m, const RefinementInputs::Estimates& estimates,
                       FluxVideo& refined) {
-    std::vector<float> known(m.voxels());
-    std::vector<float> before = squared_residuals(m, estimates.estimate, known);
-    std::vector<float> after = squared_residuals(m, refined, known);
+    std::vector<float> known = exact_samples(m);
+    std::vector<float> before = squared_residuals(m, estimates.estimate);
+    std::vector<float> after = squared_residuals(m, refined);
     const auto estimate = estimates.estimate.data();
     const auto gain = estimates.noise_gain->data();
     const std::size_t pixels = m.shape.pixels();
