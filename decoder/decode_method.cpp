@@ -105,7 +105,7 @@ constexpr NamedDecodeMethod kMethods[] = {
          });
      }},
     {"learned_fast", DecodeMethod::kLearnedFast, false, false,
-     "fast, refined by a network: near best", kMaxCoreSites, 90, 3.5,
+     "fast, refined by a network: 0.8 dB better than fast", kMaxCoreSites, 90, 3.5,
      [](Config& config, DecodeOptions& options) {
          read_options(config, options.fast);
          read_options(config, options.learned);
