@@ -14,7 +14,7 @@ WEIGHTS = Path(__file__).resolve().parents[2] / "config/models/refinement.safete
 class LearnedTest(ProgramTest):
     def setUp(self):
         super().setUp()
-        self.succeed("synth", "dice", "-o", "light.npy", "--frames", 70, "--size", "96x72", "--luminance")
+        self.succeed("synth", "dice", "-o", "light.npy", "--frames", 70, "--size", "64x48", "--luminance")
         self.succeed("emulate", "light.npy", "-o", "clip.stipple")
 
     def quality(self, method, *more):
