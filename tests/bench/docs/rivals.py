@@ -1,12 +1,13 @@
 #!/usr/bin/python3
 """Writes the tables of docs/rivals.md anew: `stipple rivals` on the middle of clips and on embedded scenes.
 
-usage: tests/bench/docs/rivals.py PROGRAM RESULTS [--footage FOLDER] [--without SYSTEM]... [--strongest] [--seeds N]
+usage: tests/bench/docs/rivals.py PROGRAM RESULTS [--footage FOLDER] [--without SYSTEM]... [--strongest | --learned]
+                                  [--seeds N]
 
 FOLDER holds the clips (default: $STIPPLE_FOOTAGE). "coded portz2013" takes minutes a clip, and so does the dictionary.
 RESULTS keeps the trials, so that a second run does only what is new, and the dictionary of hitomi2011, which is learned
-from scenes and clips that the tables do not have. With --strongest only the table of the strongest systems is made, on
-all clips. With several seeds linear PSNR has half of its 95 % interval."""
+from scenes and clips that the tables do not have. With --strongest only the table of the strongest systems is made, with
+--learned that of the method learned, both on all clips. With several seeds linear PSNR has half of its 95 % interval."""
 
 import argparse
 import json
@@ -27,6 +28,9 @@ ALL_CLIPS = [*CLIPS, "mouse250_b", "hdr_stilllife", "nat30_blocks"]
 STRONGEST = ["coded best", "hardware best", "pixel flutter best", "1x vbm4d", "4x best", "alternating kang2003",
              "binned naive", "binned vbm4d", "charge-binned vbm4d", "full rate vbm4d (4 x samples)",
              "full rate best (4 x samples)"]
+REFINED = [system.format(method) for method in ("best", "learned")
+           for system in ("coded {}", "hardware {}", "pixel flutter {}", "1x {}", "4x {}", "binned {}",
+                          "full rate {} (4 x samples)")]
 SIDE = 96  # pixels of the middle of a clip, as luminance
 COLUMNS = {"field, %": ("field_of_view", 100, 0), "samples": ("samples_per_voxel", 1, 3),
            "light, %": ("light_throughput", 100, 0), "range, stops": ("sample_range_stops", 1, 1),
@@ -47,9 +51,10 @@ def dictionary_of(program, folder, results):
     return dictionary
 
 
-def figures_of(program, footage, results, dictionary, systems, seeds):
+def figures_of(program, footage, results, dictionary, systems, seeds, methods):
     """Of a scene, or of the middle of a clip."""
     chosen = [word for system in systems for word in ("--system", system)]
+    chosen += [word for method in methods for word in ("--method", method)]
     if dictionary:
         chosen += ["--dictionary", dictionary]
     reading = [] if footage in SCENES else ["--luminance", "--crop", f"{SIDE}x{SIDE}"]
@@ -76,14 +81,14 @@ def compared(rows):
     return slots
 
 
-def tables(footage):
+def tables(footage, columns):
     """`footage`: names with the figures of the systems."""
     names = list(footage)
     first = footage[names[0]]
-    text = "| " + " | ".join(["system", *COLUMNS, *(f"`{name}`" for name in names)]) + " |\n"
-    text += "|---" * (1 + len(COLUMNS) + len(names)) + "|\n"
+    text = "| " + " | ".join(["system", *columns, *(f"`{name}`" for name in names)]) + " |\n"
+    text += "|---" * (1 + len(columns) + len(names)) + "|\n"
     for i, system in enumerate(first):
-        cells = [number(system[name] and scale * system[name], digits) for name, scale, digits in COLUMNS.values()]
+        cells = [number(system[name] and scale * system[name], digits) for name, scale, digits in columns.values()]
         cells += [quality(footage[name][i]) for name in names]
         text += f"| {system['system']} | " + " | ".join(cells) + " |\n"
     return text + "\nCompared slots: " + ", ".join(f"`{name}` {compared(rows)}" for name, rows in footage.items()) + ".\n"
@@ -95,23 +100,25 @@ def main():
     parser.add_argument("results", type=Path)
     parser.add_argument("--footage", type=Path, default=os.environ.get("STIPPLE_FOOTAGE"))
     parser.add_argument("--without", action="append", default=[], metavar="SYSTEM")
-    parser.add_argument("--strongest", action="store_true")
+    parser.add_argument("--strongest", action="store_const", dest="table", const="strongest", default="rivals")
+    parser.add_argument("--learned", action="store_const", dest="table", const="learned")
     parser.add_argument("--seeds", type=int, default=1)
     arguments = parser.parse_args()
-    systems = STRONGEST if arguments.strongest else [
+    systems = {"strongest": STRONGEST, "learned": REFINED}.get(arguments.table) or [
         system["name"] for system in tomllib.loads(SPACE.read_text())["systems"]]
     systems = [system for system in systems if system not in arguments.without]
     arguments.results.mkdir(exist_ok=True)
     learned = any("hitomi2011" in system for system in systems)
     dictionary = dictionary_of(arguments.program, arguments.footage, arguments.results) if learned else None
     footage = {scene: scene for scene in SCENES}
-    for clip in (ALL_CLIPS if arguments.strongest else CLIPS) if arguments.footage else []:
+    for clip in (CLIPS if arguments.table == "rivals" else ALL_CLIPS) if arguments.footage else []:
         footage[clip] = arguments.footage / clip
-    footage = {name: figures_of(arguments.program, clip, arguments.results, dictionary, systems, arguments.seeds)
+    methods = ["learned"] if arguments.table == "learned" else []
+    columns = {"samples": COLUMNS["samples"]} if methods else COLUMNS
+    footage = {name: figures_of(arguments.program, clip, arguments.results, dictionary, systems, arguments.seeds, methods)
                for name, clip in footage.items()}
-    name = "strongest" if arguments.strongest else "rivals"
-    block = re.compile(rf"(<!-- {name} -->\n).*?(<!-- end -->)", re.DOTALL)
-    PAGE.write_text(block.sub(lambda found: found[1] + tables(footage) + found[2], PAGE.read_text()))
+    block = re.compile(rf"(<!-- {arguments.table} -->\n).*?(<!-- end -->)", re.DOTALL)
+    PAGE.write_text(block.sub(lambda found: found[1] + tables(footage, columns) + found[2], PAGE.read_text()))
 
 
 if __name__ == "__main__":
