@@ -93,7 +93,9 @@ void add_rivals(Command& app, Action& action) {
         .shows_default()
         .type_name("NAME|FILE")
         .input();
-    command.add_list("--system", arguments->choice.systems, "only this one; may be repeated")
+    command
+        .add_list("--system", arguments->choice.systems,
+                  "only this one, and its copies by --method; may be repeated")
         .type_name("NAME")
         .default_text("all");
     command

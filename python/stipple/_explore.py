@@ -130,7 +130,7 @@ def rivals(
     results: the path of the folder of results.
     sensor: name or path of the sensor of the systems; by default that of the space.
     space: the systems, the name or path of a space.
-    systems: names of systems, only these; by default all. Those that `methods` adds are among them.
+    systems: names of systems, only these and their copies by `methods`; by default all. A copy may be named too.
     dictionary: of hitomi2011, a file that "stipple dictionary" wrote.
     methods, seeds, transfer, luminance, min_value, raw, scale, frames, crop, bin, resize, force, report, threads,
         progress: as for `explore`.

@@ -303,7 +303,15 @@ void Space::replace(const SpaceAxis& other) {
                 value = other.values.front();
                 of_systems = true;
             }
-    if (!of_systems) found->values = other.values;
+    if (of_systems) return;
+    found->values = other.values;
+    if (other.name != "system") return;
+    const auto is_named = [&](const std::string& system) {
+        return std::ranges::find(other.values, system) != other.values.end();
+    };
+    for (const SpaceSystem& system : systems)
+        if (is_named(system.copy_of) && !is_named(system.name))
+            found->values.push_back(system.name);
 }
 
 std::string Space::rig(const SpacePoint& point) const {

@@ -30,6 +30,7 @@ using SpacePoint = std::vector<std::string>;
 struct SpaceSystem {
     std::string name;                                         ///< value of the axis "system"
     std::vector<std::pair<std::string, std::string>> values;  ///< axis and value
+    std::string copy_of = {};  ///< name of the system that Space::set_methods has copied
 };
 
 /// Slots from `begin` on, before `end`.
@@ -59,6 +60,7 @@ struct Space {
     std::vector<OwnDecoder> decoders = {};  ///< methods that are not those of Stipple
 
     /// Gives an axis other values; one that systems set, the first of them in each that does.
+    /// Copies of the systems that are named stay too.
     /// \throws InputError if there is none of this name, or no system of a name.
     void replace(const SpaceAxis& axis);
     /// Decodes by these methods: they become the values of the axis "method". If systems set it,

@@ -45,7 +45,7 @@ void Space::set_methods(const std::vector<std::string>& methods) {
     for (const SpaceSystem& system : std::vector(systems)) {
         if (!is_best_of_one(system)) continue;
         for (const std::string& method : methods) {
-            SpaceSystem copy{copy_name(system.name, method), system.values};
+            SpaceSystem copy{copy_name(system.name, method), system.values, system.name};
             if (std::ranges::find(names, copy.name) != names.end()) continue;
             std::erase_if(copy.values,
                           [](const auto& value) { return value.first.starts_with("decoder."); });

@@ -28,9 +28,8 @@ ALL_CLIPS = [*CLIPS, "mouse250_b", "hdr_stilllife", "nat30_blocks"]
 STRONGEST = ["coded best", "hardware best", "pixel flutter best", "1x vbm4d", "4x best", "alternating kang2003",
              "binned naive", "binned vbm4d", "charge-binned vbm4d", "full rate vbm4d (4 x samples)",
              "full rate best (4 x samples)"]
-REFINED = [system.format(method) for method in ("best", "learned")
-           for system in ("coded {}", "hardware {}", "pixel flutter {}", "1x {}", "4x {}", "binned {}",
-                          "full rate {} (4 x samples)")]
+REFINED = ["coded best", "hardware best", "pixel flutter best", "1x best", "4x best", "binned best",
+           "full rate best (4 x samples)"]
 SIDE = 96  # pixels of the middle of a clip, as luminance
 COLUMNS = {"field, %": ("field_of_view", 100, 0), "samples": ("samples_per_voxel", 1, 3),
            "light, %": ("light_throughput", 100, 0), "range, stops": ("sample_range_stops", 1, 1),
