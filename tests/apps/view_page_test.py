@@ -70,7 +70,7 @@ class ViewPageTest(BrowserTest):
         part = light[rows, cols]
 
         def told():
-            cells = [cell.text for cell in self.browser.find_elements(By.CSS_SELECTOR, "#region-table tr:last-child td")]
+            cells = self.script("return [...document.querySelectorAll('#region-table tr:last-child td')].map(c => c.innerText)")
             return cells if cells and cells[0] == "truth" and "slot 20" in self.element("region-name").text else None
         self.wait(told)
         cells = told()
