@@ -1,4 +1,4 @@
-// Products/s (items_per_second) of a refinement network of the widths 40, 64 and 96 with 13 inputs
+// Products/s (items_per_second) of a refinement network of the widths 40, 64 and 96 with 15 inputs
 // and 2 blocks, beside those of a loop without memory, which is the peak without fused
 // multiply-add: `of_peak` is their ratio per thread, `voxels` voxels/s of wall-clock time.
 // Arguments are rows, columns and threads.
@@ -90,7 +90,7 @@ void network(benchmark::State& state) {
     const ThreadLimit limit(static_cast<int>(state.range(2)));
     const auto net = RefinementNetwork::parse(
         safetensors_file(random_network(
-            {.inputs = 13, .half = 40, .quarter = 64, .eighth = 96, .blocks = 2}, 1)),
+            {.inputs = 15, .half = 40, .quarter = 64, .eighth = 96, .blocks = 2}, 1)),
         "weights");
     const std::size_t pixels = row_major(rows, 0, cols);
     const auto planes = noise(index(net.inputs()) * pixels, 1);
