@@ -56,10 +56,12 @@ TEST(V4l2ViewTest, FramesAreShownAndRecorded) {
                   ramp(kRows * kCols, 7 * (5 + recorded)));
     EXPECT_EQ(recorded, 40);
 
+    const std::int64_t shown = camera.recent().extent().slots;
+    EXPECT_GT(shown, 0);
     std::vector<float> light;
     for (const std::uint8_t dn : ramp(kRows * kCols, 7 * (pushed - 1)))
         light.push_back(static_cast<float>(dn) / 255);
-    EXPECT_EQ(camera.recent().codes(camera.recent().extent().slots - 1), light_codes(light));
+    EXPECT_EQ(camera.recent().codes(shown - 1), light_codes(light));
 }
 
 }  // namespace

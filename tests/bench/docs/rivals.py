@@ -99,8 +99,9 @@ def main():
     parser.add_argument("results", type=Path)
     parser.add_argument("--footage", type=Path, default=os.environ.get("STIPPLE_FOOTAGE"))
     parser.add_argument("--without", action="append", default=[], metavar="SYSTEM")
-    parser.add_argument("--strongest", action="store_const", dest="table", const="strongest", default="rivals")
-    parser.add_argument("--learned", action="store_const", dest="table", const="learned")
+    table = parser.add_mutually_exclusive_group()
+    table.add_argument("--strongest", action="store_const", dest="table", const="strongest", default="rivals")
+    table.add_argument("--learned", action="store_const", dest="table", const="learned")
     parser.add_argument("--seeds", type=int, default=1)
     arguments = parser.parse_args()
     systems = {"strongest": STRONGEST, "learned": REFINED}.get(arguments.table) or [
